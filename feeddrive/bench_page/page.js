@@ -61,8 +61,8 @@ function startPage() {
         const box = group(e.label, outer, true);
         box.open = e.found;
         for (const one of e.sliders) {
-          const start = E.values[one.place], unit = { m: ["µm", 1e6], "N": ["N", 1] }[one.unit] || [one.unit, 1];
-          slider(box, one.key.replace(/_/g, " "), unit[0], unit[1], Math.min(0, 2 * start), Math.max(0, 2 * start), () => (one.place in S.values ? S.values[one.place] : start), (v) => { S.values[one.place] = v; });
+          const start = E.values[one.place];
+          slider(box, one.key.replace(/_/g, " "), one.unit, one.per, Math.min(0, 2 * start), Math.max(0, 2 * start), () => (one.place in S.values ? S.values[one.place] : start), (v) => { S.values[one.place] = v; });
         }
       }
     }

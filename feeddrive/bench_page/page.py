@@ -31,6 +31,7 @@ from feeddrive.servo.margins import GROWTH
 from feeddrive.servo.mechanics_response import Case, grid
 from feeddrive.simulate.setpoints.trial_motions import HEIGHT, RADIUS, STEP_AT, Trial, circle_about, step_at
 from feeddrive.tuning.reasons import current_loop_lines
+from feeddrive.units.quantity import shown_unit
 
 _SCRIPTS = ("linear.js", "loop.js", "engine.js", "bench.js", "drawing.js", "page.js")
 _LOWEST, _HIGHEST = 1.0, 4000.0
@@ -202,17 +203,13 @@ def _effects(plant: Plant, names: Sequence[str], found: Sequence[str]) -> list[d
     values = parameter_values(plant)
     made = []
     for effect in plant.effects[:-1]:
-        sliders = [
-            {
-                "place": names.index(f"{effect.label}.{one.key}"),
-                "key": one.key,
-                "unit": one.unit,
-                "value": values[names.index(f"{effect.label}.{one.key}")],
-            }
-            for one in effect.parameters
-            if one.key not in _FIXED_KEYS and f"{effect.label}.{one.key}" in names
-        ]
-        sliders = [one for one in sliders if one["value"]]
+        sliders = []
+        for one in effect.parameters:
+            name = f"{effect.label}.{one.key}"
+            if one.key in _FIXED_KEYS or name not in names or not values[names.index(name)]:
+                continue
+            per, _, unit = shown_unit(values[names.index(name)], one.unit)
+            sliders.append({"place": names.index(name), "key": one.key, "unit": unit, "per": per})
         if sliders:
             made.append(
                 {"name": effect.name, "label": _label(effect), "found": effect.name in found, "sliders": sliders}

@@ -9,7 +9,6 @@ import typer
 
 from feeddrive.cli.output import JsonOption, deliver, print_written, tables_of, warnings_as_lines
 from feeddrive.interface.axis import load
-from feeddrive.interface.machine.summary import Summary
 from feeddrive.output_folder import output_folder
 
 
@@ -34,12 +33,12 @@ def command(
         tables = tables_of(found.tables())
         for one in tables:
             one.columns[0].no_wrap = True  # names are searched for, so they stay in one piece
-        into = isinstance(found, Summary) and out is not None and (out.is_dir() or not out.suffix)
-        if into and out is not None and isinstance(found, Summary):
-            with output_folder(out) as folder:
+        into = out if out is not None and (out.is_dir() or not out.suffix) else None
+        if into is not None:
+            with output_folder(into) as folder:
                 found.save(folder)
     deliver(found.record(), tables, as_json, None if into else out)
-    print_written(out if into else None, as_json)
-    if into and isinstance(found, Summary) and not as_json:
+    print_written(into, as_json)
+    if into and not as_json:
         for line in found.not_drawn:
             typer.echo(f"not drawn: {line}")

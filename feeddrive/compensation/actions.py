@@ -56,7 +56,14 @@ def actions(diagnosis: Diagnosis, after: Plant) -> Actions:
         return Actions(tuple(names), None, "no stroke is declared, and none was recorded", values)
     try:
         unsure = unsure_of_play([(one.name, one.carries) for one in diagnosis.effects], diagnosis.ambiguous)
-        done = compensate_plant(after, Wishes(FORM, stroke=stroke), None, unsure, diagnosis.plant, beside=False)
+        done = compensate_plant(
+            after,
+            Wishes(FORM, stroke=stroke, recorded=diagnosis.recorded_stroke),
+            None,
+            unsure,
+            diagnosis.plant,
+            beside=False,
+        )
     except InputError as error:
         return Actions(tuple(names), None, str(error), values)
     return Actions(tuple(names), done, "", values)

@@ -44,6 +44,7 @@ class Wishes:
         stroke: [m]; that of the machine if None.
         axis: its name in the control.
         resolution: of a value [m]; that of the form if None.
+        recorded: what a diagnosis has seen of the stroke [m]; None where that is not known.
     """
 
     form: str
@@ -52,6 +53,7 @@ class Wishes:
     stroke: tuple[float, float] | None = None
     axis: str = "X"
     resolution: float | None = None
+    recorded: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)

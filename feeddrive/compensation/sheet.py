@@ -79,6 +79,10 @@ def left(done: Compensated) -> list[str]:
     if done.measured is not None:
         lines.append(difference_words(done.measured))
         lines.append(f"Single samples scatter by {micrometres(done.measured.scatter)} about what is known.")
+    seen, asked = done.wishes.recorded, done.wishes.stroke
+    if seen and asked and max(seen[0] - asked[0], asked[1] - seen[1]) > done.table.step:
+        ends = " to ".join(format_quantity(end, "m") for end in seen)
+        lines.append(f"Recorded was {ends} alone: beyond it the table goes on as was found there, measured by nobody.")
     most = micrometres(done.left_by_table)
     most = f"up to {most}" if done.left_by_table >= 5e-9 else "less than 0.01 um"
     lines.append(f"By its points and its rounding the table leaves {most} of the map.")

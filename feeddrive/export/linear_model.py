@@ -36,7 +36,7 @@ from feeddrive import __version__
 from feeddrive.errors import printable
 from feeddrive.export.nonlinear_model import Quantity, identifier_of, inputs, outputs, parameters, states
 from feeddrive.export.notes import included, left_out, linear_notes
-from feeddrive.export.point import Point, refuse_outside
+from feeddrive.export.point import Point
 from feeddrive.plant.analysis.linear import state_space
 from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.plant import Plant
@@ -78,7 +78,7 @@ def linear_model_of(plant: Plant, point: Point) -> LinearModel:
 
     Raises InputError: a point outside the stroke, or where no steady motion is found.
     """
-    refuse_outside(plant, point, plant.name)
+    plant.refuse_off_stroke(point.position, plant.name)
     position, velocity = point.position, point.linearised_at
     at = steady_motion(plant, velocity, position)
     values = plant.chain_values()

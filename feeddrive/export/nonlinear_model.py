@@ -16,7 +16,7 @@ import numpy as np
 
 from feeddrive import __version__
 from feeddrive.export.notes import included, left_out
-from feeddrive.export.point import Point, refuse_outside
+from feeddrive.export.point import Point
 from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS, ode_parameters, state_names, timed_ode
 from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.plant import Plant
@@ -129,7 +129,7 @@ def model_of(plant: Plant, point: Point) -> Model:
 
     Raises InputError: a point outside the stroke, or where no steady motion is found.
     """
-    refuse_outside(plant, point, plant.name)
+    plant.refuse_off_stroke(point.position, plant.name)
     start = steady_motion(plant, point.starts_at, point.position)
     rows = states(plant, start.state.tolist()), inputs(start.torque), outputs(), parameters(plant)
     notes = included(plant), left_out(plant)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.steady import MOVING
 from feeddrive.plant.plant import Plant
-from feeddrive.units.quantity import format_quantity, parse
+from feeddrive.units.quantity import parse
 
 _UNITS = {"x": "m", "v": "m/s"}
 _SEPARATOR = re.compile(r",(?!\d)")  # a comma before a digit is a decimal one, which is refused by its name
@@ -47,7 +47,7 @@ def export_point(plant: Plant, text: str = "", where: str = "--at") -> Point:
     """
     written = written_point(text, where)
     point = Point(written.get("x", plant.middle), written.get("v"))
-    refuse_outside(plant, point, where)
+    plant.refuse_off_stroke(point.position, where)
     return point
 
 
@@ -65,16 +65,3 @@ def written_point(text: str, where: str = "--at") -> dict[str, float]:
             raise InputError(what, where, _MEND)
         written[key] = parse(value, _UNITS[key], f"{where} {key}")
     return written
-
-
-def refuse_outside(plant: Plant, point: Point, where: str) -> None:
-    """Refuse a table position outside the declared stroke, or with the nut off the screw.
-
-    Raises:
-        InputError: names what is allowed.
-    """
-    if plant.stroke is not None and not plant.stroke[0] <= point.position <= plant.stroke[1]:
-        ends = " to ".join(format_quantity(end, "m") for end in plant.stroke)
-        what = f"the table at {format_quantity(point.position, 'm')} is outside the stroke of {plant.name}"
-        raise InputError(what, where, f"choose x from {ends}")
-    plant.chain.refuse_off_screw(point.position, where)

@@ -239,6 +239,12 @@ class Axis:
         write_text_atomically(target, plant_text_with_effects(self.text, self.added))
         return target
 
+    def _place(self, at: Quantity | None) -> float:
+        """A table position on the stroke [m], its middle if left out."""
+        place = self.plant.middle if at is None else si(at, "m", "at")
+        self.plant.refuse_off_stroke(place, "at")
+        return place
+
     def summary(
         self, at: Quantity | None = None, recording: Recording | str | Path | None = None
     ) -> Summary | HeatSummary:
@@ -249,7 +255,7 @@ class Axis:
             recording: whose share of the life is added, see `used_life`; none if left out.
 
         Raises:
-            InputError: a position off the screw, a recording without motor angle, or of a machine of heat alone.
+            InputError: a position off the stroke, a recording without motor angle, or of a machine of heat alone.
 
         >>> import feeddrive as fd
         >>> [one.title for one in fd.load("bench_axis").summary().tables()][2]
@@ -265,7 +271,7 @@ class Axis:
             return HeatSummary(self.heat)
         from feeddrive.plant.file.guide_section import declared_carriages  # Hertz's contacts take time to import
 
-        found = summarise(self.plant, None if at is None else si(at, "m", "at"))
+        found = summarise(self.plant, self._place(at))
         carriages = declared_carriages(plant_table(self.entries, str(self.path)), GRAVITY)
         used = None if recording is None else self.used_life(recording)
         return Summary(self.plant, found, rated_life(self.plant), carriages, used)
@@ -277,7 +283,7 @@ class Axis:
             at: table position; the middle of the stroke if left out.
 
         Raises:
-            InputError: a machine that is not described by parts, or a position off the screw.
+            InputError: a machine that is not described by parts, or a position off the stroke.
 
         >>> import feeddrive as fd
         >>> fd.load("kimm_testbed").lumped(at="600 mm").text.startswith("#")
@@ -286,8 +292,7 @@ class Axis:
         from feeddrive.interface.machine.modes import Lumped
 
         further = ("the [thermal] sections; temperatures are predicted with the file of the parts",)
-        place = None if at is None else si(at, "m", "at")
-        return Lumped(self.name, lump(self.plant, place, further if self.has_heat else ()))
+        return Lumped(self.name, lump(self.plant, self._place(at), further if self.has_heat else ()))
 
     def modes(self, at: Quantities = None) -> Modes:
         """Natural frequencies, motor held and free.
@@ -296,7 +301,7 @@ class Axis:
             at: table position or several; along the stroke if left out.
 
         Raises:
-            InputError: a position off the stroke or the screw.
+            InputError: a position off the stroke.
 
         >>> import feeddrive as fd
         >>> modes = fd.load("kimm_testbed").modes(["0 mm", "600 mm"])
@@ -304,6 +309,8 @@ class Axis:
         2
         """
         places = quantities(at, "m", "at")
+        for place in places:
+            self.plant.refuse_off_stroke(place, "at")
         return Modes(self.name, mode_map(self.plant, np.array(places) if places else None), self.plant)
 
     def stiffness(self, at: Quantity | None = None) -> Stiffness:
@@ -313,9 +320,9 @@ class Axis:
             at: table position; the middle of the stroke if left out.
 
         Raises:
-            InputError: a rigid machine, or a position off the screw.
+            InputError: a rigid machine, or a position off the stroke.
         """
-        place = self.plant.middle if at is None else si(at, "m", "at")
+        place = self._place(at)
         if not self.plant.chain.elastic:
             raise InputError("nothing is elastic in a rigid machine", self.name, "declare another structure")
         return Stiffness(self.name, place, stiffness_budget(self.plant, place), self.plant)

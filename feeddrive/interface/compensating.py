@@ -197,8 +197,7 @@ def compensate(
     if not found.has_motion:
         raise InputError("declares heat alone", where or found.name, "write --form sinumerik-temp")
     loop: Cascade | None = None if controller is None else cascade_for(found.plant, controller)
-    if wishes.stroke is None and found.plant.stroke is None:
-        wishes = replace(wishes, stroke=recorded)
+    wishes = replace(wishes, recorded=recorded, stroke=wishes.stroke or found.plant.stroke or recorded)
     return Compensation(compensate_plant(found.plant, wishes, loop, unsure, where), axis)
 
 

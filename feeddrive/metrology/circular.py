@@ -150,7 +150,8 @@ def circular_path(x: FloatArray, y: FloatArray, nominal: float) -> CircularPath:
     harmonics = [np.ones_like(angle), *(wave(k * angle) for k in (1, 2) for wave in (np.sin, np.cos))]
     basis = np.column_stack(harmonics)  # radius, centre, gains and squareness are no glitches
     rest = radial - basis @ np.linalg.lstsq(basis, radial, rcond=None)[0]
-    after = [np.mod(direction * (angle - quarter * math.pi / 2), 2 * math.pi) < GLITCH_SPAN for quarter in range(4)]
+    way = [np.mod(direction * (angle - quarter * math.pi / 2), 2 * math.pi) for quarter in range(4)]
+    after = [(0.5 * gap < one) & (one < GLITCH_SPAN) for one in way]  # a point at the reversal has not turned yet
     glitches = [float(rest[one][np.argmax(np.abs(rest[one]))]) if one.any() else math.nan for one in after]
     return CircularPath(
         direction,

@@ -20,6 +20,7 @@ from feeddrive.plant.chain.table_mode import with_modes
 from feeddrive.plant.composition import refuse_what_cannot_compose, refuse_what_misses_values
 from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.thermal_coupling import Coupling
+from feeddrive.units.quantity import format_quantity
 
 
 @dataclass(frozen=True)
@@ -228,6 +229,18 @@ class Plant:
     def middle(self) -> float:
         """Table position in the middle of the stroke [m]; 0 where no stroke is declared."""
         return 0.5 * sum(self.stroke) if self.stroke else 0.0
+
+    def refuse_off_stroke(self, position: float, where: str) -> None:
+        """Refuse a table position [m] outside the declared stroke, or with the nut off the screw.
+
+        Raises:
+            InputError: names what is allowed.
+        """
+        if self.stroke is not None and not self.stroke[0] <= position <= self.stroke[1]:
+            ends = " to ".join(format_quantity(end, "m") for end in self.stroke)
+            what = f"the table at {format_quantity(position, 'm')} is outside the stroke of {self.name}"
+            raise InputError(what, where, f"choose from {ends}")
+        self.chain.refuse_off_screw(position, where)
 
     def effects_of(self, kind: type[Effect]) -> tuple[Effect, ...]:
         """The effects of one class."""

@@ -32,6 +32,7 @@ from feeddrive.schema.toml_text import nearest
 from feeddrive.servo.margins import frequency_response
 from feeddrive.servo.resonances import Resonance, resonances
 from feeddrive.typing import ComplexArray, FloatArray
+from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
     import control
@@ -55,6 +56,13 @@ class Friction(StrEnum):
     HELD = "held"
 
 
+_AT_REST = {
+    Friction.DECLARED: "at rest under its declared friction",
+    Friction.FREE: "at rest without friction",
+    Friction.HELD: "at rest with the table held",
+}
+
+
 @dataclass(frozen=True)
 class Case:
     """What a response holds for.
@@ -70,6 +78,11 @@ class Case:
     velocity: float = MOVING
     payload: float = 0.0
     friction: Friction = Friction.DECLARED
+
+    @property
+    def motion(self) -> str:
+        """How the table moves, or what holds it, in words."""
+        return f"at {format_quantity(self.velocity, 'm/s')}" if self.velocity else _AT_REST[self.friction]
 
     def on(self, plant: Plant) -> Plant:
         """The plant with the payload on its table, its friction as the case has it.

@@ -126,8 +126,8 @@ def trend_of(
     dated = _dated(kept, options)
     if not dated:
         reasons = sorted({one.reason for one in kept.entries.values()})
-        why = f"({reasons[0]})" if reasons else ""
-        raise InputError(f"no recording can be used {why}", plant.name, "add recordings of the motion of this axis")
+        why = reasons[0] if reasons else "the folder holds no file of one"
+        raise InputError(f"no recording can be used ({why})", plant.name, "add recordings of the motion of this axis")
     begin = dated[0][0]
     days = np.array([(moment - begin).total_seconds() / 86400 for moment, _ in dated])
     used = [entry for _, entry in dated]

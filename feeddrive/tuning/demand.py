@@ -62,7 +62,7 @@ def cases_of(
     """
     places = tuple(positions) or _along_stroke(plant)
     for place in places:
-        refuse_off_stroke(plant, place)
+        plant.refuse_off_stroke(place, "--positions")
     return tuple(Case(place, velocity, mass) for place, mass in itertools.product(places, tuple(payloads) or (0.0,)))
 
 
@@ -87,22 +87,6 @@ def operating_points(
         places = dict.fromkeys(case.position for case in moving)
         rest += [Case(place, 0.0, 0.0, Friction.HELD) for place in places]
     return (*moving, *rest)
-
-
-def refuse_off_stroke(plant: Plant, position: float) -> None:
-    """Refuse a table position [m] outside the declared stroke, or with the nut off the screw.
-
-    Raises:
-        InputError: it is.
-    """
-    if plant.stroke is not None and not plant.stroke[0] <= position <= plant.stroke[1]:
-        low, high = (f"{1e3 * end:g} mm" for end in plant.stroke)
-        raise InputError(
-            f"the table at {1e3 * position:g} mm is outside the stroke of {plant.name}",
-            "--positions",
-            f"choose from {low} to {high}",
-        )
-    plant.chain.refuse_off_screw(position, "--positions")
 
 
 def _along_stroke(plant: Plant) -> tuple[float, ...]:

@@ -10,7 +10,7 @@ from feeddrive.errors import printable
 from feeddrive.plant.analysis.modes import held_modes, inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import KV_UNIT, Cascade
-from feeddrive.servo.mechanics_response import Case, Friction
+from feeddrive.servo.mechanics_response import Case
 from feeddrive.tuning.filter_choice import FilterChoice
 from feeddrive.tuning.largest_gain import GainLimit, Limit
 from feeddrive.tuning.recommendation import Recommendation
@@ -18,13 +18,6 @@ from feeddrive.units.quantity import format_quantity
 
 _COMPLETE = 200.0
 """Depth of a complete notch in a file [dB]: 1e-10, beyond every digit of a drive."""
-
-
-_AT_REST = {
-    Friction.DECLARED: "at rest, held by its bristles",
-    Friction.FREE: "at rest without friction",
-    Friction.HELD: "at rest with the table held",
-}
 
 
 @dataclass(frozen=True)
@@ -116,7 +109,7 @@ def controller_text(found: Recommendation, name: str) -> str:
 def describe(case: Case) -> str:
     """A case in words."""
     load = f", payload {case.payload:g} kg" if case.payload else ""
-    return f"table at {format_quantity(case.position, 'm')}{load}, {_motion(case)}"
+    return f"table at {format_quantity(case.position, 'm')}{load}, {case.motion}"
 
 
 def operating_points(found: Recommendation) -> str:
@@ -124,15 +117,9 @@ def operating_points(found: Recommendation) -> str:
     cases = [one.case for one in found.reached]
     places = list(dict.fromkeys(format_quantity(case.position, "m") for case in cases))
     loads = list(dict.fromkeys(f"{case.payload:g} kg" for case in cases))
-    motions = list(dict.fromkeys(_motion(case) for case in cases))
+    motions = list(dict.fromkeys(case.motion for case in cases))
     load = f", payloads {_listed(loads)}" if loads != ["0 kg"] else ""
     return f"table at {_listed(places)}{load}, {_listed(motions)}"
-
-
-def _motion(case: Case) -> str:
-    if case.velocity:
-        return f"at {format_quantity(case.velocity, 'm/s')}"
-    return _AT_REST[case.friction]
 
 
 def _listed(words: list[str]) -> str:

@@ -172,6 +172,21 @@ def test_sliders_move_the_picture(page: Bench, tmp_path: Path) -> None:
     assert found["gain"] < page.page.cascade.velocity_gain
 
 
+def test_sliders_of_effects_are_in_units_of_the_trade(tmp_path: Path) -> None:
+    """A lead error of 40 µm/m was 4e-5 m/m, and a place at 160 mm was 160000 µm."""
+    worn = fd.load("bench_axis").with_effects(
+        fd.effect("lead_error_cumulative", slope="40 um/m"),
+        fd.effect("friction_vs_position", peak="38 N", centre="160 mm", half_width="45 mm"),
+    )
+    found = found_in_page(fd.bench(worn, controller=CONTROLLER).text, """
+      const typed = [...document.querySelectorAll("input.typed")];
+      return Object.fromEntries(typed.map((one) => [one.getAttribute("aria-label"), one.value]));
+    """, tmp_path)  # fmt: skip
+    assert float(found["slope µm/m"]) == pytest.approx(40)
+    assert float(found["centre mm"]) == pytest.approx(160)
+    assert float(found["peak N"]) == pytest.approx(38)
+
+
 def test_what_the_page_does_not_move_is_kept_or_refused(tmp_path: Path) -> None:
     axis, path = fd.load("bench_axis"), tmp_path / "own.toml"
     own = (

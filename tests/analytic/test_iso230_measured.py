@@ -199,6 +199,10 @@ def test_drift_of_a_curve_that_is_known(tmp_path: Path) -> None:
     # within 5 % of the range of the value at the stop: exp(-t/90) - exp(-480/90) <= 0.05 (1 - exp(-480/90))
     t = -90 * math.log(0.05 * heated + math.exp(-480 / 90))
     assert found["settled at 0 mm after"] == 60 * 10 * math.ceil(t / 10)
+    assert found["heating until"] == 480 * 60
+    # without a stop the last reading is taken for it, and says so
+    forgot = fd.iso230(written(tmp_path, drift_table().replace("# stop = 480 min\n", "")))
+    assert ["heating until", "12 h"] in [list(row) for row in forgot.listing().rows]
 
 
 def test_drift_in_rows(tmp_path: Path) -> None:
@@ -250,6 +254,22 @@ def test_glitches_stand_where_the_axes_reverse(tmp_path: Path) -> None:
             assert 0.9 * height < 1e6 * found[f"glitch {sign} at {q}°"] <= height
         for q in (180, 270):
             assert abs(1e6 * found[f"glitch {sign} at {q}°"]) < 0.1 * height
+
+
+def test_a_point_at_the_reversal_itself_has_not_turned_yet(tmp_path: Path) -> None:
+    """The radius jumps from +height to -height behind a reversal; the point that stands on it is still before."""
+    rows = ["# radius = 150 mm", "angle [deg],radial [µm],direction [1]"]
+    for direction in (1, -1):
+        for k in range(721):
+            way = k / 2 % 360  # since 0 degrees
+            height = 3.2 if way in (0, 180) else 3.0  # and noise would make it the largest
+            rest = height * (1 if 0 < way <= 180 else -1) * abs(math.cos(math.radians(way)))
+            rows.append(f"{direction * k / 2},{rest!r},{direction}")
+    found = fd.iso230(written(tmp_path, "\n".join(rows) + "\n")).figures_si()
+    for sign in "+-":
+        # the smooth path, 1.9 µm sin and no cos, leaves the height at 0 and 180 degrees as it is
+        assert 1e6 * found[f"glitch {sign} at 0°"] == pytest.approx(3.0, abs=0.05)
+        assert 1e6 * found[f"glitch {sign} at 180°"] == pytest.approx(-3.0, abs=0.05)
 
 
 def staircase(lead_slope: float, play: float, noise: float = 0.0) -> fd.Recording:
@@ -377,6 +397,17 @@ def test_what_a_plant_explains(tmp_path: Path) -> None:
     assert share.left.explains == pytest.approx(slope / (slope + 10 * 2e-6**2), rel=1e-4)
     assert share.without["lead_error_cumulative"].explains == pytest.approx(0.0, abs=1e-4)
     assert share.without["guide_friction"].explains == pytest.approx(share.left.explains, rel=1e-6)
+
+
+def test_a_plant_that_explains_nothing_says_so_in_plain_digits(tmp_path: Path) -> None:
+    """What rounding leaves of nothing was 0.0002919 nm and -0 %."""
+    found = fd.iso230(staircase(30e-6, 4e-6), plant=fd.load("bench_axis"))
+    found.save(tmp_path / "out")
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    alone = found.tables()[-1].rows[1]
+    assert list(alone) == ["the plant alone", "0.000 µm", "0.000 µm", "0.000 µm", ""]
+    assert "The plant explains 0 % of the squared mean deviations." in page
+    assert " nm<" not in page and "-0 %" not in page and "-0.0 %" not in page
 
 
 def test_page_holds_graph_and_figures(tmp_path: Path) -> None:

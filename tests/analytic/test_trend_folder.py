@@ -212,7 +212,7 @@ def test_nothing_to_follow(tmp_path: Path, axis: fd.Axis) -> None:
     with pytest.raises(fd.InputError, match="no such folder"):
         fd.watch(tmp_path / "nowhere", axis)
     (tmp_path / "empty").mkdir()
-    with pytest.raises(fd.InputError, match="no recording can be used"):
+    with pytest.raises(fd.InputError, match=r"no recording can be used \(the folder holds no file of one\); add"):
         fd.watch(tmp_path / "empty", axis)
 
 

@@ -81,7 +81,7 @@ def test_recording_is_laid_over(tmp_path: Path, capsys: pytest.CaptureFixture[st
 @pytest.mark.parametrize(
     ("flags", "message"),
     [
-        (["--at", "x=2 m"], "--at: the table at 2000 mm is outside the stroke of KIMM testbed; choose x from 0 mm"),
+        (["--at", "x=2 m"], "--at: the table at 2000 mm is outside the stroke of KIMM testbed; choose from 0 mm"),
         (["--positions", "0 mm,1200 mm"], "the table at 1200 mm is outside the stroke"),
         (["--positions", "0.2"], "0.2 is a bare number"),
         (["--positions", "0 mm", "--at", "x=1 mm"], "positions are given twice"),

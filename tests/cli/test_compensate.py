@@ -9,6 +9,8 @@ import pytest
 
 import feeddrive as fd
 from feeddrive.cli.main import main
+from feeddrive.compensation.compensate import Wishes, plant_table
+from feeddrive.compensation.sheet import left
 from tests.analytic import compensation_readers as read
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -119,3 +121,11 @@ def test_heat_is_written_for_the_plc(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert abs(offset) < 2e-3
     assert abs(slope) < 2e-5  # cold, nothing has grown
     assert "MD32750" in (tmp_path / "temp.st.txt").read_text()
+
+
+@pytest.mark.parametrize(("recorded", "told"), [((0.0, 0.06), False), ((0.0, 0.03), True), (None, False)])
+def test_table_beyond_what_was_recorded_says_so(worn: Path, recorded: tuple[float, float] | None, told: bool) -> None:
+    wishes = Wishes("csv", every=5e-3, stroke=(0.0, 0.06), recorded=recorded)
+    lines = [line for line in left(plant_table(fd.load(worn).plant, wishes)) if line.startswith("Recorded was")]
+    assert lines == ["Recorded was 0 mm to 30 mm alone: beyond it the table goes on as was found there, measured by "
+                     "nobody."] * told  # fmt: skip

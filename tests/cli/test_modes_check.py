@@ -56,7 +56,7 @@ def test_modes_of_structures_without_position(capsys: pytest.CaptureFixture[str]
 
 @pytest.mark.parametrize(
     ("place", "told"),
-    [("2 m", "the nut is not on the screw"), ("250", "bare number"), ("1 kg", "does not measure a length")],
+    [("2 m", "outside the stroke"), ("250", "bare number"), ("1 kg", "does not measure a length")],
 )
 def test_modes_at_an_impossible_place(place: str, told: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["modes", "kimm_testbed", "--at", place]) == 2

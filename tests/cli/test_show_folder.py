@@ -39,6 +39,30 @@ def test_machine_without_parts_has_no_figures_and_says_what_they_need(
     assert [path.name for path in tmp_path.iterdir()] == ["show.json"]
 
 
+def test_machine_of_heat_alone_gives_a_folder_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "thermal_bench", "--out", str(tmp_path / "heat")]) == 0
+    assert "written: " in capsys.readouterr().out
+    assert json.loads((tmp_path / "heat" / "show.json").read_text(encoding="utf-8"))["structure"] == "heat alone"
+
+
+@pytest.mark.parametrize("command", ["show", "modes", "lump"])
+def test_position_beyond_the_stroke_is_refused(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """The nut is still on its screw there (to 1100 mm), the table is not on its stroke."""
+    further = ["--out", "never.toml"] if command == "lump" else []
+    assert main([command, "kimm_testbed", "--at", "1050 mm", *further]) == 2
+    said = capsys.readouterr().err
+    assert (
+        said == "error: --at: the table at 1050 mm is outside the stroke of KIMM testbed; choose from 0 mm to 1000 mm\n"
+    )
+
+
+def test_springs_of_a_lumped_chain_stand_once(capsys: pytest.CaptureFixture[str]) -> None:
+    """Its parts are its axial and torsional stiffness, which stood twice in one column that adds up to 100 %."""
+    assert main(["show", "bench_axis"]) == 0
+    shown = capsys.readouterr().out
+    assert shown.count("244.7 N/µm") == 2 and shown.count("1183 N/µm") == 1  # the declared value, and the stiffness
+
+
 def test_file_where_the_folder_should_be_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "taken").write_text("here", encoding="utf-8")
     assert main(["show", "hsr_axis", "--out", str(tmp_path / "taken")]) == 2

@@ -19,8 +19,10 @@ def test_warm_up_is_told_written_and_read_back(tmp_path: Path, capsys: pytest.Ca
     asked = ["thermal", BENCH, "--speed", "750 rev/min", "--duration", "3 h", "--out", str(tmp_path)]
     assert main(asked) == 0
     told = capsys.readouterr().out
-    for expected in ("750 rev/min constant", "within 1 µm after", "W/K", "does not close by", "reduced", "28.09 min"):
+    for expected in ("750 rev/min constant", "within 1 µm after", "W/K", "does not close by", "reduced", "28.09 min",
+                     "end of the screw"):  # fmt: skip
         assert expected in told
+    assert "nut at end" not in told  # which no nut reaches
     content = json.loads((tmp_path / "thermal.json").read_text(encoding="utf-8"))
     assert content["format"] == "feeddrive-thermal/1"
     assert content["energy"]["imbalance"] < 1e-9

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import feeddrive as fd
 from feeddrive.cli.main import main
 from feeddrive.files import find_plant, find_scenario_file
 
@@ -44,6 +45,14 @@ def test_recommendation_is_written_and_runs(tmp_path: Path, capsys: pytest.Captu
     ran = json.loads(capsys.readouterr().out)
     assert ran["controller"]["position_gain"]["1/s"] == pytest.approx(content["position_gain"]["1/s"])
     assert all(point["time"] is not None and point["time"] < 0.1 for point in ran["evaluations"][0]["points"])
+
+
+def test_curves_of_the_open_loop_are_named_apart() -> None:
+    """Two cases at rest differ by what holds the table: on one figure they must not have one name."""
+    for one in fd.tune(fd.load("bench_axis"))._figures():
+        names = one.figure.axes[0].get_legend_handles_labels()[1]
+        assert names == ["at 3 m/min", "at rest without friction", "at rest with the table held"]
+        assert len({line.get_linestyle() for line in one.figure.axes[0].get_legend().get_lines()}) == 3
 
 
 def test_drive_of_a_scenario_and_json_alone(capsys: pytest.CaptureFixture[str]) -> None:

@@ -74,8 +74,8 @@ def _remarks(names: Sequence[str], matrix: FloatArray) -> tuple[str, ...]:
             second, rho = names[j], float(matrix[i, j])
             if abs(rho) <= TOGETHER or (first.endswith("]") and second.endswith("]")):
                 continue
-            kept = "difference" if rho > 0 else "sum"
             same = first.split(".")[0] == second.split(".")[0]
             lost = "each is known only with the other" if same else "these two cannot be told apart here"
-            remarks.append(f"{first} and {second}: {lost} (correlation {rho:+.3f}); only their {kept} is well known")
+            way = "rise together" if rho > 0 else "rise and fall against each other"
+            remarks.append(f"{first} and {second}: {lost} (correlation {rho:+.3f}); they may {way} at hardly any cost")
     return tuple(remarks)

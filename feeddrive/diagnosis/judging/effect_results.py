@@ -72,8 +72,9 @@ def _curve_and_bump(effect: Effect) -> dict[str, ParameterResult]:
 
 
 def _evidence(effect: Effect, share: Share) -> str:
-    larger = {name: error_without(value) for name, value in share.explains.items() if value > 0.001}
-    channels = ", ".join(f"that of {name.replace('_', ' ')} {factor:.3g} times" for name, factor in larger.items())
+    times = {name: f"{error_without(value):.3g}" for name, value in share.explains.items()}
+    larger = {name: factor for name, factor in times.items() if float(factor) > 1}  # "1 times larger" says nothing
+    channels = ", ".join(f"that of {name.replace('_', ' ')} {factor} times" for name, factor in larger.items())
     seen = f"Without it the error on data not fitted is larger: {channels}" if channels else "It lowers no judged error"
     idle = "; it does not carry to them" if share.shows else "; they could hardly show it"
     more = "" if share.carries else idle

@@ -24,7 +24,7 @@ def _coulomb_asymmetry(v: Mapping[str, Value]) -> str:
     return _signed(
         v["delta_force"],
         "Friction is higher when the table moves in + direction: a one-sided preload, wiper or cover.",
-        "Friction is higher when the table moves in - direction: a one-sided preload, wiper or cover.",
+        "Friction is higher when the table moves in − direction: a one-sided preload, wiper or cover.",
     )
 
 
@@ -32,7 +32,7 @@ def _viscous_asymmetry(v: Mapping[str, Value]) -> str:
     return _signed(
         v["delta_viscous"],
         "Drag rises faster with speed in + direction.",
-        "Drag rises faster with speed in - direction, and more slowly in + direction.",
+        "Drag rises faster with speed in − direction, and more slowly in + direction.",
     )
 
 
@@ -100,7 +100,7 @@ def _periods(order: Value) -> str:
 def _constant_force(v: Mapping[str, Value]) -> str:
     return _signed(
         v["force"],
-        "A force pulls the table in - direction: gravity, a counterbalance, a cable, or an offset of the drive.",
+        "A force pulls the table in − direction: gravity, a counterbalance, a cable, or an offset of the drive.",
         "A force pulls the table in + direction: gravity, a counterbalance, a cable, or an offset of the drive.",
     )
 

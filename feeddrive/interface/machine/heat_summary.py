@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
-from feeddrive.interface.shown import Listing, Shown
+from feeddrive.interface.shown import Listing, Shown, write_json
 from feeddrive.thermal.machine_heat import Heat, HeatSensor
 from feeddrive.thermal.run.heat_figures import HeatRow, heat_rows
 from feeddrive.units.quantity import format_quantity
@@ -51,6 +52,18 @@ class HeatSummary(Shown):
         """Everything as plain values, SI, of a machine that declares heat alone."""
         named = {"format": "feeddrive-show/1", "name": self.heat.name, "structure": "heat alone"}
         return {**named, **self.declared()}
+
+    not_drawn = ()
+    """Heat alone has no figure to draw."""
+
+    def save(self, folder: str | Path) -> Path:
+        """Write `show.json`.
+
+        Raises:
+            InputError: the folder cannot be written.
+        """
+        write_json(self.record(), Path(folder) / "show.json")
+        return Path(folder)
 
     def declared(self) -> dict[str, Any]:
         """The heat as plain values, SI."""

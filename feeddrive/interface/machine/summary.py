@@ -65,13 +65,14 @@ class Stiffness(Shown):
         """One row per part, then axial, torsional and combined."""
         budget = self.budget
         found = [(one.part, one.deformation, 1 / one.compliance, one.share) for one in budget.parts]
+        found = [one for one in found if not one[1].startswith(one[0])]  # the springs of a lumped chain are the sums
         found += [
             ("axial stiffness", "", budget.axial, budget.axial_share),
             ("torsional stiffness at the table", "", budget.torsional, budget.torsional_share),
             (f"combined stiffness, {self.held}", "", budget.total, 1.0),
         ]
         rows = [
-            [_named(part, how), format_quantity(k, "N/m"), percent(share, 1) if how else percent(share)]
+            [f"{part}, {how}" if how else part, format_quantity(k, "N/m"), percent(share, 1) if how else percent(share)]
             for part, how, k, share in found
         ]
         names = ("part", "deformation", "stiffness [N/m]", "share")
@@ -256,11 +257,6 @@ class Summary(Shown):
         ]
         headings = ("motor is", "frequency", "damping", *(found.coordinates[i] for i in kept))
         return Listing(f"Modes, in table travel{at}", headings, rows, caption=chain_remark(found.chain_valid_to))
-
-
-def _named(part: str, how: str) -> str:
-    """A part and how it yields; the spring of a lumped chain is named by that alone."""
-    return f"{part}, {how}" if how and not how.startswith(part) else how or part
 
 
 def _scaled(shape: FloatArray) -> FloatArray:

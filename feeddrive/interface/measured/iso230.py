@@ -31,7 +31,7 @@ from feeddrive.recording import Recording
 from feeddrive.recording.channels import CHANNEL_UNITS
 from feeddrive.recording.files.opening import first_bytes, head_of
 from feeddrive.recording.traces.opened import could_be_trace
-from feeddrive.units.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity, percent
 
 if TYPE_CHECKING:
     from feeddrive.report.figures.drawing import ReportFigure
@@ -84,10 +84,10 @@ class Iso230(Shown):
             return (self.listing(), *short)
         one = self.share
         named = {"measured": (one.measured, ""), "the plant alone": (one.predicted, "")}
-        named["left"] = (one.left, f"{100 * one.left.explains:.1f} %")
-        named |= {f"left without {key}": (left, f"{100 * left.explains:.1f} %") for key, left in one.without.items()}
+        named["left"] = (one.left, percent(one.left.explains, 1))
+        named |= {f"left without {key}": (left, percent(left.explains, 1)) for key, left in one.without.items()}
         rows = [
-            [name, *(format_quantity(v, "m") for v in (left.systematic, left.mean_range, left.reversal)), explains]
+            [name, *(f"{1e6 * v:.3f} µm" for v in (left.systematic, left.mean_range, left.reversal)), explains]
             for name, (left, explains) in named.items()
         ]
         title = "What the plant explains of the mean deviations"
@@ -262,7 +262,7 @@ def unit_of(key: str) -> str:
     """SI unit of a figure."""
     if key.startswith("slope"):
         return "m/m"
-    if key.startswith("settled"):
+    if key.startswith(("settled", "heating")):
         return "s"
     return "rad" if key == "lag" else "1" if key == "gain" else "m"
 
@@ -287,7 +287,7 @@ def _linear_figures(test: LinearTest) -> dict[str, float]:
 
 def _drift_figures(test: DriftTest) -> dict[str, float]:
     heating = test.heating
-    found: dict[str, float] = {}
+    found = {"heating until": test.stop}  # the end of the readings where no stop is given
     for one in heating.targets:
         at = format_quantity(one.position, "m")
         found |= {

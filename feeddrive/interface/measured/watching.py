@@ -81,11 +81,10 @@ class Watched(Shown):
 
     @property
     def _title(self) -> str:
-        trend = self.trend
-        last = trend.when(float(trend.days[-1]))
-        return (
-            f"{self.axis.name}: {len(trend.used)} recordings from {trend.begin:%Y-%m-%d %H:%M} to {last:%Y-%m-%d %H:%M}"
-        )
+        from feeddrive.report.words.trend_words import date_words
+
+        first, last = (date_words(self.trend, float(self.trend.days[i])) for i in (0, -1))
+        return f"{self.axis.name}: {len(self.trend.used)} recordings from {first} to {last}"
 
     def record(self) -> dict[str, Any]:
         """Plain values for JSON, SI."""

@@ -255,8 +255,18 @@ def _series(title: str, names: Sequence[str], found: ThermalStudy) -> Listing:
 
 def _heading(name: str) -> str:
     if name.startswith("table_growth"):
-        return f"nut at {name.removeprefix('table_growth_').replace('mm', ' mm')} [µm]"
+        place = _place(name)
+        return f"{place if place == _END else f'nut at {place}'} [µm]"
     return f"{name.removesuffix('_temperature').replace('_', ' ')} [°C]"
+
+
+_END = "end of the screw"
+
+
+def _place(name: str) -> str:
+    """Of a growth, by its name: where the nut stands, or the far end of the screw, which no nut reaches."""
+    place = name.rpartition("growth_")[2]
+    return _END if place == "end" else place.replace("mm", " mm")
 
 
 def _shown(name: str, value: float) -> str:
@@ -277,9 +287,8 @@ def _warm_ups(found: ThermalStudy) -> Listing:
 
 
 def _warm_up(name: str, one: Settled, found: ThermalStudy) -> list[str]:
-    place = name.removeprefix("growth_").replace("mm", " mm")
     beyond = " (beyond this run)" if math.isfinite(one.time) and one.time > found.duty.duration else ""
-    return [place, format_quantity(one.final, "m"), _time(one.time) + beyond, _time(one.rise_time)]
+    return [_place(name), format_quantity(one.final, "m"), _time(one.time) + beyond, _time(one.rise_time)]
 
 
 def _constants(found: ThermalStudy) -> Listing:

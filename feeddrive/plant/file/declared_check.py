@@ -18,7 +18,9 @@ def check_declared(entries: Mapping[str, Any], where: str, plant: Plant) -> tupl
     Takes the entries as written, their file, and the plant that was read from them, whose origins name the sources.
     Raises InputError for a part that the catalogue does not hold.
     """
-    guessed = {key: text for key, text in plant.origins.items() if text.startswith(_GUESS)}
+    known = plant.chain.known_values if plant.has_motion else ()
+    written = {one.key: f"{one.section}.{one.section_key}" for one in known}
+    guessed = {written.get(key, key): text for key, text in plant.origins.items() if text.startswith(_GUESS)}
     return (
         *(_departed(one) for one in departures(entries, where)),
         *(

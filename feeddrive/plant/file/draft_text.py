@@ -7,17 +7,11 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from feeddrive.parts.catalogue.part_files import catalogue
-from feeddrive.plant.file.drafting import Drafted, Wishes
+from feeddrive.plant.file.drafting import RESOLUTIONS, Drafted, Wishes
 from feeddrive.plant.file.plant_schema import OF_PARTS, PLANT
 from feeddrive.schema.key import Key, Kind
 from feeddrive.schema.section import Section
 
-_SENSORS = (
-    '{ channel = "motor_torque", kind = "current", at = "motor" }',
-    '{ channel = "motor_angle", kind = "encoder", at = "motor",'
-    ' resolution = { value = "6e-6 rad", source = "guess: 20 bit" } }',
-    '{ channel = "table_position", kind = "scale", at = "table", resolution = { value = "10 nm", source = "guess" } }',
-)
 _ORDER = (
     "motor", "coupling", "ball_screw", "support", "bearing.near", "bearing.far", "nut", "table", "guide", "damping",
 )  # fmt: skip
@@ -39,9 +33,9 @@ def draft_text(made: Drafted, wishes: Wishes) -> str:
         'format = "feeddrive-plant/1"',
         f'name = "{wishes.name}"',
         f'structure = "{wishes.structure}"',
-        f"sensor = [{_SENSORS[0]},",
-        *(f"          {one}," for one in _SENSORS[1:-1]),
-        f"          {_SENSORS[-1]}]",
+        'sensor = [{ channel = "motor_torque", kind = "current", at = "motor" },',
+        f'          {{ channel = "motor_angle", kind = "encoder", at = "motor", {_resolution("motor_angle")} }},',
+        f'          {{ channel = "table_position", kind = "scale", at = "table", {_resolution("table_position")} }}]',
     ]
     for name in _ORDER:
         if name in made.sections:
@@ -50,6 +44,11 @@ def draft_text(made: Drafted, wishes: Wishes) -> str:
         lines += ["", "[[effect]]", *(_line(key, value) for key, value in effect.items())]
     lines += ["", *_further(made, wishes)]
     return "\n".join(lines) + "\n"
+
+
+def _resolution(channel: str) -> str:
+    value, why = RESOLUTIONS[f"{channel}.resolution"]
+    return f'resolution = {{ value = "{value}", source = "guess: {why}" }}'
 
 
 def _section(name: str, made: Drafted, wishes: Wishes) -> list[str]:

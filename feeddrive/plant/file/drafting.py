@@ -90,6 +90,13 @@ class Drafted:
         self.guesses[f"{section}.{key}"] = why
 
 
+RESOLUTIONS = {
+    "motor_angle.resolution": ("6e-6 rad", "20 bit"),
+    "table_position.resolution": ("10 nm", "a fine linear scale"),
+}
+"""Of encoder and scale: value, and why; the catalogue holds none."""
+
+
 def drafted(wishes: Wishes) -> Drafted:
     """The parts and values of an axis.
 
@@ -110,6 +117,7 @@ def drafted(wishes: Wishes) -> Drafted:
     _guide(wishes, made)
     made.guess("damping", "ratio", 0.02, "steel parts with rolling contacts, 0.01 to 0.05")
     _drags(made, screw, preload)
+    made.guesses |= {key: why for key, (_, why) in RESOLUTIONS.items()}
     return made
 
 

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 _MARKS = {Kind.RESONANCE: ("^", 6.0, "bottom"), Kind.ANTI_RESONANCE: ("v", -6.0, "top")}
 _LABELLED = 3
 """Curves up to which resonances carry their frequency."""
+_STYLES = ("-", "--", "-.")
+"""Of curves that are few: one that lies on another lets it be seen."""
 _COHERENT = 0.8
 
 
@@ -40,8 +42,9 @@ def bode_figure(family: Family, measured: Measured | None = None) -> ReportFigur
     panels = list(figure.subplots(len(heights), 1, sharex=True, height_ratios=heights))
     if measured is not None:
         _draw_measured(panels, measured, magnitude_unit(family.curves[0].response.unit)[1])
-    for curve, colour in zip(family.curves, _colours(len(family.curves)), strict=True):
-        _draw(panels[0], panels[1], curve, colour, _label(curve.case, family))
+    few = len(family.curves) <= len(_STYLES)
+    for i, (curve, colour) in enumerate(zip(family.curves, _colours(len(family.curves)), strict=True)):
+        _draw(panels[0], panels[1], curve, colour, _STYLES[i] if few else "-", _label(curve.case, family))
         if len(family.curves) <= _LABELLED and curve.margins is None and curve.closed is None:
             _mark(panels[0], curve, colour, len(family.curves) == 1)
     _reference_lines(panels[0], panels[1], family)
@@ -58,11 +61,11 @@ def bode_figure(family: Family, measured: Measured | None = None) -> ReportFigur
     return ReportFigure(f"bode_{family.stem}", f"Bode plot: {family.title}", _caption(family, measured), figure)
 
 
-def _draw(top: Axes, bottom: Axes, curve: Curve, colour: Any, label: str) -> None:
+def _draw(top: Axes, bottom: Axes, curve: Curve, colour: Any, style: str, label: str) -> None:
     response = curve.response
     shown = response.decibel + magnitude_unit(response.unit)[1]
-    top.plot(response.frequency, shown, color=colour, linewidth=1.4, label=label)
-    bottom.plot(*_broken(response.frequency, response.values), color=colour, linewidth=1.4)
+    top.plot(response.frequency, shown, style, color=colour, linewidth=1.4, label=label)
+    bottom.plot(*_broken(response.frequency, response.values), style, color=colour, linewidth=1.4)
 
 
 def _broken(frequency: FloatArray, values: ComplexArray) -> tuple[FloatArray, FloatArray]:
@@ -179,8 +182,8 @@ def _label(case: Case, family: Family) -> str:
         parts.append(f"x = {format_quantity(case.position, 'm')}")
     if len({one.payload for one in cases}) > 1:
         parts.append(f"{case.payload:+g} kg")
-    if len({one.velocity for one in cases}) > 1:
-        parts.append(f"at {format_quantity(case.velocity, 'm/s')}" if case.velocity else "at rest")
+    if len({one.motion for one in cases}) > 1:
+        parts.append(case.motion)
     return ", ".join(parts) or "linear"
 
 

@@ -23,6 +23,7 @@ from feeddrive.report.figures.drawing import (
 )
 from feeddrive.report.figures.figure_metrology import micrometres
 from feeddrive.typing import FloatArray
+from feeddrive.units.quantity import percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -120,8 +121,8 @@ def _explained(test: LinearTest, share: PlantShare) -> ReportFigure:
     dress(axes, "target [mm]", "mean deviation [µm]")
     legend_above(axes, 4)
     whole, left = micrometres(share.measured.systematic), micrometres(share.left.systematic)
-    explained = f"{100 * share.left.explains:.0f} %"
-    text = f"The plant explains {explained} of the squared mean deviations; E {whole} of which {left} are left"
+    explained = f"The plant explains {percent(share.left.explains)} of the squared mean deviations"
+    text = f"{explained}; E {whole} of which {left} are left. The plant is drawn about the mean of what was measured."
     return ReportFigure("explained", "What the plant explains", text, figure)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,8 +16,8 @@ from feeddrive.report.figures.drawing import RenderedFigure, render
 from feeddrive.report.figures.figure_iso230 import iso230_figures
 from feeddrive.report.pages.html import page
 from feeddrive.report.pages.markup import Cell, bullets, figure, paragraph, section, table
-from feeddrive.typing import FloatArray
-from feeddrive.units.quantity import format_quantity
+from feeddrive.report.words.number_text import fixed
+from feeddrive.units.quantity import percent
 
 _TITLES = {2: "accuracy and repeatability of positioning", 3: "drift of an axis that warms itself", 4: "circular test"}
 
@@ -85,8 +85,9 @@ def _targets(test: LinearTest) -> str:
     return table(heads, zip(*columns, strict=True), "dense")
 
 
-def _column(values: FloatArray) -> list[str]:
-    return [f"{1e6 * value:.3f} µm" for value in values]
+def _column(values: Iterable[float]) -> list[str]:
+    """Lengths in µm, to the nanometre: what rounding leaves of nothing is shown as nothing."""
+    return [f"{fixed(1e6 * value, 3)} µm" for value in values]
 
 
 def _shares(share: PlantShare) -> str:
@@ -102,23 +103,20 @@ def _shares(share: PlantShare) -> str:
 
 def _row(name: str, one: Share, explains: bool) -> list[str | Cell]:
     lengths = (one.systematic, one.mean_range, one.reversal)
-    last = f"{100 * one.explains:.1f} %" if explains else ""
-    return [name, *(format_quantity(value, "m") for value in lengths), last]
+    return [name, *_column(lengths), percent(one.explains, 1) if explains else ""]
 
 
 def _share_words(share: PlantShare) -> str:
     """Which effects carry what is explained."""
     carried = {name: share.left.explains - one.explains for name, one in share.without.items()}
     order = sorted((name for name, value in carried.items() if value > 0.01), key=lambda name: -carried[name])
-    named = (
-        ", ".join(f"{name.replace('_', ' ')} {100 * carried[name]:.0f} %" for name in order) or "none of its effects"
-    )
+    named = "".join(f", {name.replace('_', ' ')} {percent(carried[name])}" for name in order)
     creeps = (
         " Its friction is declared smooth in speed and lets the springs relax at rest: what they keep under friction "
         "(lost motion) is not in the plant's B."
     )
     return (
-        f"The plant explains {100 * share.left.explains:.0f} % of the squared mean deviations, by {named}. "
+        f"The plant explains {percent(share.left.explains)} of the squared mean deviations{named}. "
         "The motor is taken to stand where it was sent: a control that reads the scale would hide what the screw does."
         f"{creeps if share.creeps else ''}"
     )

@@ -84,12 +84,18 @@ def _matrix(known: Correlation) -> str:
     rows = [
         [
             _short(name),
-            *(f"{known.matrix[i][j]:+.2f}" if j < i else DASH for j in range(len(known.names) - 1)),
+            *(_signed(known.matrix[i][j]) if j < i else DASH for j in range(len(known.names) - 1)),
         ]
         for i, name in enumerate(known.names)
         if i > 0
     ]
     return table(heads, rows)
+
+
+def _signed(rho: float) -> str:
+    """A correlation with its sign; nothing has none."""
+    text = fixed(rho, 2)
+    return f"+{text}" if float(f"{rho:.2f}") > 0 else text
 
 
 def _short(name: str) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from feeddrive.trend.change_points import Found
+from feeddrive.trend.change_points import FEWEST, Found
 from feeddrive.trend.events import Change, Event, Settles
 from feeddrive.trend.limits import Limit
 from feeddrive.trend.series_evidence import JUMP, ODD, SETTLING, SLOPE
@@ -25,7 +25,9 @@ def verdict_lines(trend: Trend, searched: Mapping[int, str]) -> list[str]:
     growth = growth_lines(trend)
     lines = [*growth, *changes]
     if not lines:
-        lines = [f"Nothing changed in {len(trend.used)} recordings."]
+        count = len(trend.used)
+        few = f"{count} recordings are too few to tell a change, which takes {FEWEST}."
+        lines = [few if count < FEWEST else f"Nothing changed in {count} recordings."]
     lines += [f"Full search: {text}." for _, text in sorted(searched.items())]
     left = [name for name, limit in trend.limits.items() if limit.left is not None]
     if left:
