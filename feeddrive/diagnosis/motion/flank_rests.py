@@ -20,8 +20,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d, uniform_filter1d
+from scipy.ndimage import binary_dilation, maximum_filter1d, uniform_filter1d
 
+from feeddrive.diagnosis.motion.band import Band
 from feeddrive.diagnosis.motion.slow_rows import ROUGH
 from feeddrive.plant.analysis.modes import held_modes
 from feeddrive.plant.plant import Plant
@@ -39,12 +40,15 @@ FEWEST = 8
 """Rows over which ρ is taken at least: five of them are independent, as `ROUGH` asks for."""
 
 
-def flank_rests(recording: Recording, plant: Plant) -> tuple[FlankRests, BoolArray] | None:
+def flank_rests(
+    recording: Recording, plant: Plant, band: Band
+) -> tuple[FlankRests, BoolArray] | None:
     """First samples at which each rest is told, and rows (n,) that bounce before it; None where no rest can be told.
 
     Args:
         recording: with a motor angle.
         plant: whose lead and stiffness apply.
+        band: of the comparison, whose filter carries bounces to rows about them.
     """
     if "table_position" not in recording or not plant.chain.elastic:
         return None
@@ -78,7 +82,8 @@ def flank_rests(recording: Recording, plant: Plant) -> tuple[FlankRests, BoolArr
     if not off or max(off) > NEAR * lost:
         return None
     last_rest, last_loud = (np.maximum.accumulate(np.where(one, np.arange(len(one)), -1)) for one in (rests, loud))
-    return FlankRests(samples, sides), last_loud > last_rest
+    reach = math.ceil(band.sample_rate / band.edge)
+    return FlankRests(samples, sides), np.asarray(binary_dilation(last_loud > last_rest, iterations=reach))
 
 
 def _power(series: FloatArray, length: int) -> FloatArray:

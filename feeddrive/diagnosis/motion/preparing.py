@@ -74,7 +74,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
     encoder = encoder_error(placed(plant, zero), recording, band, noise, bool(scaled_from), telling)
     motion = encoder.motion if encoder is not None else motor_motion(from_zero(recording), recording["motor_angle"])
     has_scale = "table_position" in names
-    rests, bouncing = flank_rests(recording, plant) or (None, None)
+    rests, bouncing = flank_rests(recording, plant, band) or (None, None)
     return AxisEvidence(
         recording,
         measured,
