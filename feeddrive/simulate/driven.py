@@ -220,7 +220,7 @@ def _on_flank(
         stretch: of the nut to begin with [m].
         riding: memory to what `_riding` says.
     """
-    memory, free, step = place.memory.copy(), len(rigid) // 2, np.inf
+    memory, free = place.memory.copy(), len(rigid) // 2
     memory[: 2 * free] = rigid
     memory[:free] -= stretch * np.array(riding(memory)[2]).ravel()
     for _ in range(TURNS):
@@ -229,8 +229,9 @@ def _on_flank(
             return place
         moved = np.linalg.lstsq(slope, error[:, 0], rcond=None)[0]
         memory[:free] -= moved
-        step = float(np.max(np.abs(moved)))
-    return Position(memory, place.own, place.level) if step <= TOLERANCE else place
+        if np.max(np.abs(moved)) <= TOLERANCE:
+            return Position(memory, place.own, place.level)
+    return place
 
 
 def on_grid(series: FloatArray, substeps: int) -> FloatArray:
@@ -282,7 +283,12 @@ def _machine(plant: Plant) -> tuple[Machine, ca.Function, ca.Function, ca.Functi
     read = outputs(memory, fed[2], fed[3], fed[4], fed[5] + settings[0], values)
     before = ca.Function("feeddrive_before", arguments, [own, fed[:4], ca.SX.zeros(0, 1)])
     after = ca.Function("feeddrive_after", arguments, [read])
-    return machine_of(Program(step, before, after, 1, plant.chain.varies)), outputs, _start(plant), _riding(plant, step.layout)
+    return (
+        machine_of(Program(step, before, after, 1, plant.chain.varies)),
+        outputs,
+        _start(plant),
+        _riding(plant, step.layout),
+    )
 
 
 def _start(plant: Plant) -> ca.Function:

@@ -40,9 +40,7 @@ FEWEST = 8
 """Rows over which ρ is taken at least: five of them are independent, as `ROUGH` asks for."""
 
 
-def flank_rests(
-    recording: Recording, plant: Plant, band: Band
-) -> tuple[FlankRests, BoolArray] | None:
+def flank_rests(recording: Recording, plant: Plant, band: Band) -> tuple[FlankRests, BoolArray] | None:
     """First samples at which each rest is told, and rows (n,) that bounce before it; None where no rest can be told.
 
     Args:

@@ -18,7 +18,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d, uniform_filter1d
+from scipy.ndimage import label, maximum_filter1d, uniform_filter1d
 
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.diagnosis.motion.band import white_noise
@@ -128,8 +128,11 @@ def _other_motions(evidence: AxisEvidence, error: float) -> Iterator[MotorMotion
 
 
 def _lost(missed: Missed, evidence: AxisEvidence) -> BoolArray:
-    """Samples of chaos, and those after them, shape (n,)."""
+    """Samples of chaos, and those after them, shape (n,); of bounces from a rest to the next all, where one is chaos."""
     contact = max(1, round(CONTACT / evidence.recording.sample_time))
     chaotic = missed.table > AMPLIFICATION * missed.cause
     lost: BoolArray = maximum_filter1d(chaotic, contact, origin=(contact - 1) // 2)
-    return lost if evidence.bouncing is None else lost | evidence.bouncing
+    if evidence.bouncing is None:
+        return lost
+    bounces, _ = label(evidence.bouncing)
+    return lost | (evidence.bouncing & np.isin(bounces, bounces[chaotic]))
