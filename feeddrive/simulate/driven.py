@@ -10,7 +10,6 @@ weight); a cutting force is added as the screw holds it, without the dynamics be
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import casadi as ca
@@ -54,7 +53,7 @@ PASSES = 3
 """For the table position at the start; travel per length is below 1e-3, so each gains three digits."""
 
 LEANING = 1e-6
-"""Stretch beyond a flank that the search for the load's rest on it begins with [m]: inside the play there is no slope."""
+"""Stretch beyond a flank [m] that the search for the load's rest on it begins with: within the play is no slope."""
 
 TURNS = 5
 """Steps of that search: one where spring and friction are straight, each doubles the digits where they are not."""
@@ -182,7 +181,7 @@ def simulate_driven(
             at = sample * motion.substeps
             given = motion.angle[at], motion.speed[at], motion.acceleration[at], motion.time[at]
             rigid = np.array(beginning(*given[:2], values)).ravel()
-            place = _on_flank(place, rigid, anew[sample], lambda memory: riding(memory, *given, values))
+            place = _on_flank(place, rigid, anew[sample], riding, (*given, values))
             shown[:, sample] = np.array(outputs(place.memory, *given, values)).ravel()
             torque[at] = shown[TORQUE, sample]
         length = end - sample
@@ -210,7 +209,11 @@ def _anew(plant: Plant, rests: FlankRests | None) -> dict[int, float]:
 
 
 def _on_flank(
-    place: Position, rigid: FloatArray, stretch: float, riding: Callable[[FloatArray], list[ca.DM]]
+    place: Position,
+    rigid: FloatArray,
+    stretch: float,
+    riding: ca.Function,
+    given: tuple[float, float, float, float, FloatArray],
 ) -> Position:
     """The load where it moves with the motor on a flank; its bristles slide on as they do.
 
@@ -218,13 +221,14 @@ def _on_flank(
         place: where the run is; kept where the load does not come to rest on that flank.
         rigid: coordinates and rates without stretch, (2 n,).
         stretch: of the nut to begin with [m].
-        riding: memory to what `_riding` says.
+        riding: from `_riding`.
+        given: of the motor angle, speed and acceleration, time, parameters.
     """
     memory, free = place.memory.copy(), len(rigid) // 2
     memory[: 2 * free] = rigid
-    memory[:free] -= stretch * np.array(riding(memory)[2]).ravel()
+    memory[:free] -= stretch * np.array(riding(memory, *given)[2]).ravel()
     for _ in range(TURNS):
-        error, slope, _ = (np.array(one) for one in riding(memory))
+        error, slope, _ = (np.array(one) for one in riding(memory, *given))
         if not (np.isfinite(error).all() and np.isfinite(slope).all()):
             return place
         moved = np.linalg.lstsq(slope, error[:, 0], rcond=None)[0]
@@ -319,7 +323,7 @@ def _outputs(plant: Plant, layout: Layout) -> ca.Function:
     """
     symbols, given = parameter_symbols(plant), _given(layout)
     chain, p = plant.chain, chain_symbols(plant, symbols)
-    theta, _, acceleration, time = given[1:]
+    acceleration, time = given[3:]
     q, rate, mass, unmoved, found = _unmoved(plant, layout, symbols, given)
     screw, table = ca.horzcat(*chain.screw(p)), ca.horzcat(*chain.table(p))
     phi, x = ca.mtimes(screw, q), ca.mtimes(table, q)

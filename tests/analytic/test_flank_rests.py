@@ -14,19 +14,20 @@ from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording
 from feeddrive.simulate.driven import FlankRests, motor_motion, simulate_driven
+from feeddrive.typing import FloatArray
 
 PLANT = read_plant(find_plant("bench_axis"))
 RADIUS = PLANT.chain.motor_radius
 STEP, SPEED, STROKE = 1e-3, 0.1, 1.0
-TIME = np.arange(8000) * STEP
+TIME: FloatArray = STEP * np.arange(8000, dtype=np.float64)
 PLAY = 0.2e-3
 NOISE = 0.2e-6
 
 
-def strokes() -> np.ndarray:
+def strokes() -> FloatArray:
     """Motor angle of strokes of one second to and fro, turned about within 50 ms."""
     rate = SPEED / RADIUS * np.tanh(np.sin(np.pi * TIME / STROKE) / 0.05)
-    return np.asarray(np.cumsum(rate) * STEP)
+    return np.asarray(np.cumsum(rate) * STEP, dtype=np.float64)
 
 
 def recorded(play: float, bounce: float, lead_error: float = 3e-6) -> Recording:
@@ -49,7 +50,8 @@ def test_rests_are_told_behind_the_bounces_and_not_before_the_contact_has_forgot
     assert np.array_equal(rests.sides, [1, -1] * 4)  # one a stroke, pushed the way it goes
     assert (since > 0.3 + forgotten).all() and (since < 0.3 + forgotten + 0.05).all()
     assert bouncing[(TIME % STROKE > 0.02) & (TIME % STROKE < 0.3)].all()
-    assert not bouncing[(TIME % STROKE > 0.35 + forgotten + 0.05) & (TIME % STROKE < 0.95)].any()
+    rested, leaves = 0.4 + forgotten, 0.95
+    assert not bouncing[(TIME % STROKE > rested) & (TIME % STROKE < leaves)].any()
 
 
 @pytest.mark.parametrize("play", [0.0, 5e-6])

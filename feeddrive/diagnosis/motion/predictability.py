@@ -128,7 +128,11 @@ def _other_motions(evidence: AxisEvidence, error: float) -> Iterator[MotorMotion
 
 
 def _lost(missed: Missed, evidence: AxisEvidence) -> BoolArray:
-    """Samples of chaos, and those after them, shape (n,); of bounces from a rest to the next all, where one is chaos."""
+    """Samples of chaos, and those after them, shape (n,).
+
+    Where the recording tells rests, a bounce with chaos in it is lost from the rest before it to the one behind it: a
+    motor that is given takes no power from it, and what it does between rows at a contact is not known.
+    """
     contact = max(1, round(CONTACT / evidence.recording.sample_time))
     chaotic = missed.table > AMPLIFICATION * missed.cause
     lost: BoolArray = maximum_filter1d(chaotic, contact, origin=(contact - 1) // 2)
