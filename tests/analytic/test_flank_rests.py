@@ -49,9 +49,9 @@ def test_rests_are_told_behind_the_bounces_and_not_before_the_contact_has_forgot
     since = TIME[rests.samples] % STROKE
     assert np.array_equal(rests.sides, [1, -1] * 4)  # one a stroke, pushed the way it goes
     assert (since > 0.3 + forgotten).all() and (since < 0.3 + forgotten + 0.05).all()
-    assert bouncing[(TIME % STROKE > 0.02) & (TIME % STROKE < 0.3)].all()
-    rested, leaves = 0.4 + forgotten, 0.95
-    assert not bouncing[(TIME % STROKE > rested) & (TIME % STROKE < leaves)].any()
+    turned = TIME % STROKE
+    assert bouncing[(turned > 0.02) & (turned < 0.3)].all()
+    assert not bouncing[(turned > forgotten + 0.4) & (turned < 0.95)].any()
 
 
 @pytest.mark.parametrize("play", [0.0, 5e-6])
