@@ -130,8 +130,8 @@ def _other_motions(evidence: AxisEvidence, error: float) -> Iterator[MotorMotion
 def _lost(missed: Missed, evidence: AxisEvidence) -> BoolArray:
     """Samples of chaos, and those after them, shape (n,).
 
-    Where the recording tells rests, a bounce with chaos in it is lost from the rest before it to the one behind it: a
-    motor that is given takes no power from it, and what it does between rows at a contact is not known.
+    Where the recording tells rests, a bounce that magnifies the error at all is lost from the rest before it to the one
+    behind it: a motor that is given takes no power from it, and what it does between rows at a contact is not known.
     """
     contact = max(1, round(CONTACT / evidence.recording.sample_time))
     chaotic = missed.table > AMPLIFICATION * missed.cause
@@ -139,4 +139,4 @@ def _lost(missed: Missed, evidence: AxisEvidence) -> BoolArray:
     if evidence.bouncing is None:
         return lost
     bounces, _ = label(evidence.bouncing)
-    return lost | (evidence.bouncing & np.isin(bounces, bounces[chaotic]))
+    return lost | (evidence.bouncing & np.isin(bounces, bounces[missed.table > LINEAR * missed.cause]))
