@@ -17,18 +17,19 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 from scipy.signal import firwin
 
+from feeddrive.effects.base import TransmissionEffect
 from feeddrive.engine.engine import Feed, Machine, machine_of, rested, run_machine
-from feeddrive.engine.program import Program, StepReport, joined
+from feeddrive.engine.program import Position, Program, StepReport, joined
 from feeddrive.engine.step.linear_part import Layout
 from feeddrive.engine.step.step import driven_step
 from feeddrive.parts.life.consumed_life import ConsumedLife, consumed_life, rigid_nut_forces
 from feeddrive.plant.analysis.rated_life import preload_of
 from feeddrive.plant.chain.chain import symbolic
-from feeddrive.plant.equations import effect_forces
+from feeddrive.plant.equations import Forces, effect_forces
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import chain_symbols, parameter_symbols, parameter_values, per_structure
+from feeddrive.plant.structure import Symbols, chain_symbols, parameter_symbols, parameter_values, per_structure
 from feeddrive.plant.transmission_law import travel_deviation
-from feeddrive.typing import FloatArray
+from feeddrive.typing import Expression, FloatArray, IntegerArray
 
 TOLERANCE = 1e-10
 """Error of the table position that one step may make [m]: the springs to the motor forget it within milliseconds."""
@@ -50,6 +51,25 @@ TORQUE = 4
 
 PASSES = 3
 """For the table position at the start; travel per length is below 1e-3, so each gains three digits."""
+
+LEANING = 1e-6
+"""Stretch beyond a flank [m] that the search for the load's rest on it begins with: within the play is no slope."""
+
+TURNS = 5
+"""Steps of that search: one where spring and friction are straight, each doubles the digits where they are not."""
+
+
+@dataclass(frozen=True, eq=False)
+class FlankRests:
+    """Samples from which the load is known to ride on one flank of a play, pushed by the motor.
+
+    Attributes:
+        samples: rising, shape (k,).
+        sides: direction in which the motor pushes, +1 or -1, shape (k,).
+    """
+
+    samples: IntegerArray
+    sides: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,13 +150,17 @@ def motor_motions(time: FloatArray, angles: FloatArray, substeps: int | None = N
     return [MotorMotion(fine, *each, substeps) for each in zip(angle, speed, acceleration, strict=True)]
 
 
-def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERANCE) -> LoadMotion:
+def simulate_driven(
+    plant: Plant, motion: MotorMotion, tolerance: float = TOLERANCE, rests: FlankRests | None = None
+) -> LoadMotion:
     """Load side and motor torque of the plant at the samples of a motor motion, starting at rest without stretch.
 
-    A step may be wrong by `tolerance` [m] at the table. Raises SimulationError for a motion that cannot be followed; it
-    says when, and which effect to look at.
+    A step may be wrong by `tolerance` [m] at the table. Where the load of a plant with play is known to rest on a
+    flank it begins anew on it. A motor that is given takes no power from a bounce: a landing that the encoder's error
+    has shifted goes on bouncing where the machine rests (multiple shooting: Bock and Plitt, IFAC Proceedings 17 (1984)
+    1603). Raises SimulationError for a motion that cannot be followed; it says when, and which effect to look at.
     """
-    machine, outputs, beginning = _machine(plant)
+    machine, outputs, beginning, riding = _machine(plant)
     values = np.array(parameter_values(plant))
     states = np.zeros(0)
     if machine.program.step.layout.coordinates:
@@ -149,9 +173,18 @@ def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERA
     first = outputs(place.memory, motion.angle[0], motion.speed[0], motion.acceleration[0], 0.0, values)
     shown[:, 0] = np.array(first).ravel()
     torque[0] = shown[TORQUE, 0]
-    length = max(1, STRETCH // motion.substeps)
+    anew = _anew(plant, rests)
+    begun_at = sorted({*range(0, count - 1, max(1, STRETCH // motion.substeps)), *anew})
     reports = []
-    for sample in range(0, count - 1, length):
+    for sample, end in zip(begun_at, [*begun_at[1:], count - 1], strict=True):
+        if sample in anew:
+            at = sample * motion.substeps
+            given = motion.angle[at], motion.speed[at], motion.acceleration[at], motion.time[at]
+            rigid = np.array(beginning(*given[:2], values)).ravel()
+            place = _on_flank(place, rigid, anew[sample], riding, (*given, values))
+            shown[:, sample] = np.array(outputs(place.memory, *given, values)).ravel()
+            torque[at] = shown[TORQUE, sample]
+        length = end - sample
         fed = _fed(motion, sample, length)
         outcome = run_machine(machine, plant, Feed(fed, step, step), place, tolerance)
         shown[:, sample + 1 : sample + 1 + length] = outcome.seen[motion.substeps - 1 :: motion.substeps].T
@@ -164,6 +197,45 @@ def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERA
     phi, rate, x, velocity, needed, force = shown
     kept = motion.time[at], motion.angle[at], motion.speed[at]
     return LoadMotion(*kept, phi, rate, x, velocity, needed, force, joined(reports))
+
+
+def _anew(plant: Plant, rests: FlankRests | None) -> dict[int, float]:
+    """Sample to the place of the nut against the table in which a plant with play begins anew there [m]."""
+    play = sum(e.free_play(e.values) for e in plant.effects if isinstance(e, TransmissionEffect) and e.has_play)
+    if rests is None or not plant.chain.elastic or not float(play) > 0:
+        return {}
+    places = rests.sides * (0.5 * float(play) + LEANING)
+    return dict(zip(rests.samples.tolist(), places.tolist(), strict=True))
+
+
+def _on_flank(
+    place: Position,
+    rigid: FloatArray,
+    stretch: float,
+    riding: ca.Function,
+    given: tuple[float, float, float, float, FloatArray],
+) -> Position:
+    """The load where it moves with the motor on a flank; its bristles slide on as they do.
+
+    Args:
+        place: where the run is; kept where the load does not come to rest on that flank.
+        rigid: coordinates and rates without stretch, (2 n,).
+        stretch: of the nut to begin with [m].
+        riding: from `_riding`.
+        given: of the motor angle, speed and acceleration, time, parameters.
+    """
+    memory, free = place.memory.copy(), len(rigid) // 2
+    memory[: 2 * free] = rigid
+    memory[:free] -= stretch * np.array(riding(memory, *given)[2]).ravel()
+    for _ in range(TURNS):
+        error, slope, _ = (np.array(one) for one in riding(memory, *given))
+        if not (np.isfinite(error).all() and np.isfinite(slope).all()):
+            return place
+        moved = np.linalg.lstsq(slope, error[:, 0], rcond=None)[0]
+        memory[:free] -= moved
+        if np.max(np.abs(moved)) <= TOLERANCE:
+            return Position(memory, place.own, place.level)
+    return place
 
 
 def on_grid(series: FloatArray, substeps: int) -> FloatArray:
@@ -205,8 +277,8 @@ def unfollowed(motion: MotorMotion) -> LoadMotion:
 
 
 @per_structure
-def _machine(plant: Plant) -> tuple[Machine, ca.Function, ca.Function]:
-    """What runs a structure, its outputs and its start."""
+def _machine(plant: Plant) -> tuple[Machine, ca.Function, ca.Function, ca.Function]:
+    """What runs a structure, its outputs, its start, and what keeps its load from riding with the motor."""
     step = driven_step(plant)
     outputs = _outputs(plant, step.layout)
     memory, own, fed, settings = (ca.SX.sym(*a) for a in (("m", step.layout.memory), ("o", 0), ("f", 6), ("s", 1)))
@@ -215,7 +287,12 @@ def _machine(plant: Plant) -> tuple[Machine, ca.Function, ca.Function]:
     read = outputs(memory, fed[2], fed[3], fed[4], fed[5] + settings[0], values)
     before = ca.Function("feeddrive_before", arguments, [own, fed[:4], ca.SX.zeros(0, 1)])
     after = ca.Function("feeddrive_after", arguments, [read])
-    return machine_of(Program(step, before, after, 1, plant.chain.varies)), outputs, _start(plant)
+    return (
+        machine_of(Program(step, before, after, 1, plant.chain.varies)),
+        outputs,
+        _start(plant),
+        _riding(plant, step.layout),
+    )
 
 
 def _start(plant: Plant) -> ca.Function:
@@ -244,21 +321,12 @@ def _outputs(plant: Plant, layout: Layout) -> ca.Function:
     The torque is the motor's row of M q'' + C q' + K q = T + f; what rides with the motor on a common hub moves with
     the acceleration that the other rows give it.
     """
-    symbols = parameter_symbols(plant)
+    symbols, given = parameter_symbols(plant), _given(layout)
     chain, p = plant.chain, chain_symbols(plant, symbols)
-    memory = ca.SX.sym("memory", layout.memory)
-    theta, speed, acceleration, time = (ca.SX.sym(name) for name in ("theta", "speed", "acceleration", "time"))
-    free = layout.coordinates
-    if chain.elastic:
-        q, rate = ca.vertcat(theta, memory[:free]), ca.vertcat(speed, memory[free : 2 * free])
-    else:
-        q, rate = theta / chain.motor(p)[0], speed / chain.motor(p)[0]
+    acceleration, time = given[3:]
+    q, rate, mass, unmoved, found = _unmoved(plant, layout, symbols, given)
     screw, table = ca.horzcat(*chain.screw(p)), ca.horzcat(*chain.table(p))
     phi, x = ca.mtimes(screw, q), ca.mtimes(table, q)
-    z = memory[layout.states : layout.states + layout.bristles]
-    found = effect_forces(plant, symbols, q, rate, z, time, None)
-    mass, damping, stiffness = (symbolic(m(p, x)) for m in (chain.mass, chain.damping, chain.stiffness))
-    unmoved = ca.mtimes(damping, rate) + ca.mtimes(stiffness, q) - found.on_coordinates  # M q'' = motor torque - this
     if chain.elastic:
         others = ca.solve(ca.sparsify(mass[1:, 1:]), -unmoved[1:] - mass[1:, 0] * acceleration)
         row = ca.vertcat(acceleration, others)
@@ -268,7 +336,50 @@ def _outputs(plant: Plant, layout: Layout) -> ca.Function:
     if not chain.elastic:
         x = x + travel_deviation(plant, symbols, phi, x, time)
     result = ca.vertcat(phi, ca.mtimes(screw, rate), x, ca.mtimes(table, rate), torque, found.transmitted)
-    return ca.Function("outputs", [memory, theta, speed, acceleration, time, symbols.vector], [result])
+    return ca.Function("outputs", [*given, symbols.vector], [result])
+
+
+def _riding(plant: Plant, layout: Layout) -> ca.Function:
+    """What keeps the load from moving as rigidly as its rates say, for a search for its coordinates.
+
+    (memory, theta, theta', theta'', t, parameters) -> (rows of M q'' + C q' + K q - f without the motor's, how they
+    change with the free coordinates, the table over these).
+    """
+    symbols, given = parameter_symbols(plant), _given(layout)
+    memory, acceleration, free = given[0], given[3], layout.coordinates
+    if not plant.chain.elastic:
+        return ca.Function("riding", [*given, symbols.vector], [ca.SX.zeros(0, 1)] * 3)
+    p = chain_symbols(plant, symbols)
+    _, _, mass, unmoved, _ = _unmoved(plant, layout, symbols, given)
+    motion = plant.chain.rigid_motion(p)
+    along = ca.vertcat(*[entry / motion[0] for entry in motion])
+    rows = (unmoved + ca.mtimes(mass, along) * acceleration)[1:]
+    change = ca.jacobian(rows, memory)[:, :free]
+    table = ca.vertcat(*list(plant.chain.table(p))[1:])
+    return ca.Function("riding", [*given, symbols.vector], [rows, change, table])
+
+
+def _given(layout: Layout) -> list[Expression]:
+    """Symbols (memory, theta, theta', theta'', t)."""
+    names = ("theta", "speed", "acceleration", "time")
+    return [ca.SX.sym("memory", layout.memory), *(ca.SX.sym(name) for name in names)]
+
+
+def _unmoved(
+    plant: Plant, layout: Layout, symbols: Symbols, given: list[Expression]
+) -> tuple[Expression, Expression, Expression, Expression, Forces]:
+    """(q, q', M, C q' + K q - f, forces of effects): M q'' is the motor torque less the fourth."""
+    memory, theta, speed, _, time = given
+    chain, p, free = plant.chain, chain_symbols(plant, symbols), layout.coordinates
+    if chain.elastic:
+        q, rate = ca.vertcat(theta, memory[:free]), ca.vertcat(speed, memory[free : 2 * free])
+    else:
+        q, rate = theta / chain.motor(p)[0], speed / chain.motor(p)[0]
+    x = ca.mtimes(ca.horzcat(*chain.table(p)), q)
+    z = memory[layout.states : layout.states + layout.bristles]
+    found = effect_forces(plant, symbols, q, rate, z, time, None)
+    mass, damping, stiffness = (symbolic(m(p, x)) for m in (chain.mass, chain.damping, chain.stiffness))
+    return q, rate, mass, ca.mtimes(damping, rate) + ca.mtimes(stiffness, q) - found.on_coordinates, found
 
 
 def used_life(

@@ -18,7 +18,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.flaws import quantisation_step
 from feeddrive.recording.long.joined import clock
-from feeddrive.simulate.driven import MotorMotion, motor_motion
+from feeddrive.simulate.driven import FlankRests, MotorMotion, motor_motion
 from feeddrive.typing import BoolArray, FloatArray
 
 
@@ -43,6 +43,8 @@ class AxisEvidence(Evidence):
         acting: torque as it acts at the rows, of all frequencies, (n,) [N m]; None where it is not known.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
+        rests: where the load is seen to ride on a flank; None where it is not.
+        bouncing: samples at which it has left a flank and not come to rest again, (n,); None as `rests`.
     """
 
     motion: MotorMotion
@@ -59,6 +61,8 @@ class AxisEvidence(Evidence):
     lead_map: FloatArray | None = None
     law_curves: dict[str, list[dict[str, FloatArray]]] = field(default_factory=dict)
     told: FloatArray | None = None
+    rests: FlankRests | None = None
+    bouncing: BoolArray | None = None
 
     def where_predictable(self, predictable: BoolArray | FloatArray) -> Self:
         """The evidence without the samples of weight 0, the table position weighed at the others."""

@@ -18,7 +18,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d, uniform_filter1d
+from scipy.ndimage import label, maximum_filter1d, uniform_filter1d
 
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.diagnosis.motion.band import white_noise
@@ -94,17 +94,17 @@ def has_play(effects: Sequence[Effect]) -> bool:
 def _missed(plant: Plant, evidence: AxisEvidence) -> Missed:
     plant = evidence.placed(plant)
     radius, error = plant.chain.motor_radius, _encoder_error(evidence)
-    base, squares = _behind(plant, evidence.motion), np.zeros(len(evidence.recording))
+    base, squares = _behind(plant, evidence.motion, evidence), np.zeros(len(evidence.recording))
     for other in _other_motions(evidence, error):
-        squares += evidence.band.filter(_behind(plant, other) - base) ** 2 / DRAWS
+        squares += evidence.band.filter(_behind(plant, other, evidence) - base) ** 2 / DRAWS
     about = 2 * round(REACH / (evidence.band.edge * evidence.recording.sample_time)) + 1
     table = np.sqrt(np.maximum(uniform_filter1d(squares, about), 0.0))  # a running sum may end below zero
     return Missed(table, error * radius)
 
 
-def _behind(plant: Plant, motion: MotorMotion) -> FloatArray:
+def _behind(plant: Plant, motion: MotorMotion, evidence: AxisEvidence) -> FloatArray:
     """Way [m] of the table beyond that of the motor, (n,): a slow error of the motor is followed, and not magnified."""
-    run = simulate_driven(plant, motion)
+    run = simulate_driven(plant, motion, rests=evidence.rests)
     behind: FloatArray = run.table_position - plant.chain.motor_radius * motion.angle[motion.samples]
     return behind
 
@@ -128,8 +128,15 @@ def _other_motions(evidence: AxisEvidence, error: float) -> Iterator[MotorMotion
 
 
 def _lost(missed: Missed, evidence: AxisEvidence) -> BoolArray:
-    """Samples of chaos, and those after them, shape (n,)."""
+    """Samples of chaos, and those after them, shape (n,).
+
+    Where the recording tells rests, a bounce that magnifies the error at all is lost from the rest before it to the one
+    behind it: a motor that is given takes no power from it, and what it does between rows at a contact is not known.
+    """
     contact = max(1, round(CONTACT / evidence.recording.sample_time))
     chaotic = missed.table > AMPLIFICATION * missed.cause
     lost: BoolArray = maximum_filter1d(chaotic, contact, origin=(contact - 1) // 2)
-    return lost
+    if evidence.bouncing is None:
+        return lost
+    bounces, _ = label(evidence.bouncing)
+    return lost | (evidence.bouncing & np.isin(bounces, bounces[missed.table > LINEAR * missed.cause]))

@@ -158,7 +158,7 @@ def _asked_for(effect: SourceEffect, motion: MotorMotion) -> FloatArray:
 def _simulated(plant: Plant, evidence: AxisEvidence) -> LoadMotion:
     """The driven simulation; no numbers where the plant cannot be followed with these values."""
     try:
-        return simulate_driven(plant, evidence.motion)
+        return simulate_driven(plant, evidence.motion, rests=evidence.rests)
     except SimulationError:
         return unfollowed(evidence.motion)
 

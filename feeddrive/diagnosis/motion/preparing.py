@@ -12,6 +12,7 @@ from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence, from_zero, placed
 from feeddrive.diagnosis.motion.band import END_CUT, Band, comparison_band, held, sensor_noise
 from feeddrive.diagnosis.motion.encoder_error import encoder_error
+from feeddrive.diagnosis.motion.flank_rests import flank_rests
 from feeddrive.diagnosis.motion.lead_map import lead_map
 from feeddrive.diagnosis.motion.slow_rows import (
     is_slow,
@@ -73,6 +74,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
     encoder = encoder_error(placed(plant, zero), recording, band, noise, bool(scaled_from), telling)
     motion = encoder.motion if encoder is not None else motor_motion(from_zero(recording), recording["motor_angle"])
     has_scale = "table_position" in names
+    rests, bouncing = flank_rests(recording, plant, band) or (None, None)
     return AxisEvidence(
         recording,
         measured,
@@ -90,6 +92,8 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         zero,
         acting=acting.get("motor_torque") if not scaled_from else None,
         lead_map=band.filter(lead_map(recording["table_position"], plant.chain.radius)) if has_scale else None,
+        rests=rests,
+        bouncing=bouncing,
     ).with_encoder(encoder)
 
 

@@ -1,0 +1,82 @@
+"""Rests of the load on a flank of a play: where a recording tells them, and what a simulation makes of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from feeddrive.diagnosis.motion.band import comparison_band
+from feeddrive.diagnosis.motion.flank_rests import flank_rests
+from feeddrive.effects.transmission.backlash import Backlash
+from feeddrive.files import find_plant
+from feeddrive.plant.analysis.modes import held_modes
+from feeddrive.plant.analysis.steady import steady_motion
+from feeddrive.plant.file.plant_file import read_plant
+from feeddrive.recording import Recording
+from feeddrive.simulate.driven import FlankRests, motor_motion, simulate_driven
+from feeddrive.typing import FloatArray
+
+PLANT = read_plant(find_plant("bench_axis"))
+RADIUS = PLANT.chain.motor_radius
+STEP, SPEED, STROKE = 1e-3, 0.1, 1.0
+TIME: FloatArray = STEP * np.arange(8000, dtype=np.float64)
+PLAY = 0.2e-3
+NOISE = 0.2e-6
+
+
+def strokes() -> FloatArray:
+    """Motor angle of strokes of one second to and fro, turned about within 50 ms."""
+    rate = SPEED / RADIUS * np.tanh(np.sin(np.pi * TIME / STROKE) / 0.05)
+    return np.asarray(np.cumsum(rate) * STEP, dtype=np.float64)
+
+
+def recorded(play: float, bounce: float, lead_error: float = 3e-6) -> Recording:
+    """Strokes with a table that lags half a play, and bounces for 0.3 s behind each turn."""
+    angle = strokes()
+    side, since = np.sign(np.sin(np.pi * TIME / STROKE)), TIME % STROKE
+    bounces = bounce * np.abs(np.sin(2 * np.pi * 40 * since)) * (since < 0.3)
+    table = RADIUS * angle - side * (0.5 * play - bounces) + lead_error * np.sin(angle)
+    table = table + NOISE * np.random.default_rng(3).standard_normal(len(TIME))
+    return Recording("strokes", TIME, {"motor_angle": angle, "table_position": table}, STEP)
+
+
+def test_rests_are_told_behind_the_bounces_and_not_before_the_contact_has_forgotten() -> None:
+    told = flank_rests(recorded(PLAY, 20e-6), PLANT, comparison_band(PLANT, 1 / STEP))
+    assert told is not None
+    rests, bouncing = told
+    slowest = min((pole for pole in held_modes(PLANT, PLANT.middle).poles if pole.imag > 0), key=lambda p: p.imag)
+    forgotten = -1 / slowest.real
+    since = TIME[rests.samples] % STROKE
+    assert np.array_equal(rests.sides, [1, -1] * 4)  # one a stroke, pushed the way it goes
+    assert (since > 0.3 + forgotten).all() and (since < 0.3 + forgotten + 0.05).all()
+    turned = TIME % STROKE
+    assert bouncing[(turned > 0.02) & (turned < 0.3)].all()
+    assert not bouncing[(turned > forgotten + 0.4) & (turned < 0.95)].any()
+
+
+@pytest.mark.parametrize("play", [0.0, 5e-6])
+def test_of_a_play_as_small_as_the_travel_errors_nothing_is_told(play: float) -> None:
+    assert flank_rests(recorded(play, 0.25 * play), PLANT, comparison_band(PLANT, 1 / STEP)) is None
+
+
+def test_a_load_begun_anew_rides_on_its_flank_as_in_steady_motion() -> None:
+    plant = PLANT.with_effects(Backlash.of(width=PLAY))
+    motion = motor_motion(TIME[:2000], strokes()[:2000])
+    rests = FlankRests(np.array([600, 1600]), np.array([1.0, -1.0]))
+    free, anew = simulate_driven(plant, motion), simulate_driven(plant, motion, rests=rests)
+    behind = anew.table_position - RADIUS * anew.motor_angle
+    for sample, side in ((600, 1), (1600, -1)):
+        speed = RADIUS * anew.motor_speed[sample]
+        state = steady_motion(plant, float(speed), 0.1).state
+        lag = RADIUS * state[0] - state[len(plant.chain.coordinates) - 1]
+        assert side * lag > 0.5 * PLAY
+        # what the motor still accelerates by, and what it then moves the load on its spring, is far below a nanometre
+        assert behind[sample : sample + 300] == pytest.approx(-lag, abs=2e-9)
+    assert np.array_equal(anew.table_position[:600], free.table_position[:600])
+
+
+def test_a_plant_without_play_goes_on() -> None:
+    motion = motor_motion(TIME[:2000], strokes()[:2000])
+    rests = FlankRests(np.array([600]), np.array([1.0]))
+    one, other = (simulate_driven(PLANT, motion, rests=each) for each in (None, rests))
+    assert np.array_equal(one.table_position, other.table_position)
