@@ -13,7 +13,7 @@ import pytest
 from scipy.integrate import quad
 
 from feeddrive.diagnosis.finding.attempt import Attempt
-from feeddrive.diagnosis.finding.sets import Neighbour, neighbours, odds_of_members
+from feeddrive.diagnosis.finding.sets import Neighbour, _not_told, neighbours, odds_of_members
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
 from feeddrive.diagnosis.likelihood.set_evidence import (
@@ -266,3 +266,18 @@ def test_set_that_declines_wins_where_the_other_does_worse_there_than_elsewhere(
     assert (odds > 0) is wins
     assert odds_between(second, first, COUNT) == pytest.approx(-odds, rel=1e-6)
     assert gain_between(first, second, in_folds=False).pays is wins
+
+
+def test_a_step_goes_no_further_than_a_size_where_it_gains_less_than_the_prior_takes() -> None:
+    """Two columns that differ by noise alone: their sum is told, their difference is not."""
+    generator = np.random.default_rng(11)
+    told, noise = generator.standard_normal(ROWS), generator.standard_normal(ROWS)
+    columns = np.column_stack([told, told + 1e-4 * generator.standard_normal(ROWS)])
+    length = np.linalg.norm(columns, axis=0)
+    normal = columns.T @ columns / np.outer(length, length)
+    for true in (np.array([3.0, 3.0]), np.array([4000.0, -3994.0])):
+        step = np.linalg.solve(normal, columns.T @ (columns @ true + noise) / length)
+        kept = (step - _not_told(normal, normal, step, length)) / length  # white noise of one
+        assert kept.sum() == pytest.approx(6.0, abs=5 / np.sqrt(ROWS))  # five deviations of the sum's noise
+        # a difference of 8000 makes 0.4 deviations a row, which ROWS of them tell; one of none is left where it was
+        assert kept[0] - kept[1] == pytest.approx(true[0] - true[1], rel=0.3, abs=1e-2)

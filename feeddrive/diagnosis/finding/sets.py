@@ -183,6 +183,25 @@ def needed_members(problem: Problem, found: Fit, may_go: Callable[[Effect], bool
     return Standing(problem, found)
 
 
+def _not_told(normal: FloatArray, scatter: FloatArray, step: FloatArray, length: FloatArray) -> FloatArray:
+    """Part of a step, (k,), that goes further than a size for less than p(θ) takes: there no slope tells the way.
+
+    Args:
+        normal, scatter: of columns of length one, products and covariance of their products with the residual, (k, k).
+        step: in their coefficients, (k,).
+        length: of the columns, (k,).
+    """
+    if not (np.all(np.isfinite(normal)) and np.all(np.isfinite(scatter)) and np.any(np.abs(step / length) > 1)):
+        return np.zeros(len(step))
+    information, ways = np.linalg.eigh(normal)
+    along = ways.T @ step
+    variance = np.sum(ways * (scatter @ ways), axis=0) / np.maximum(information, TINY)
+    sizes = ways * along / length[:, None]
+    costly = 0.5 * along**2 * information / np.maximum(variance, TINY) < np.sum(np.log1p(sizes**2), axis=0)
+    part: FloatArray = ways @ np.where(costly & (np.max(np.abs(sizes), axis=0) > 1), along, 0.0)
+    return part
+
+
 class _Columns:
     """All columns of the sets near one, and their products.
 
@@ -235,8 +254,10 @@ class _Columns:
             wanted = self.with_residual[places] - self.products[np.ix_(places, fixed)].sum(axis=1)
             length = np.sqrt(np.diag(self.products)[places])
             length = np.where(length > 0, length, 1.0)
-            normal = self.products[np.ix_(places, places)] / np.outer(length, length)
-            taken[places] = np.linalg.lstsq(normal, wanted / length, rcond=1e-10)[0] / length
+            scale, own = np.outer(length, length), np.ix_(places, places)
+            normal, scatter = self.products[own] / scale, self.scatter[own] / scale
+            step = np.linalg.lstsq(normal, wanted / length, rcond=1e-10)[0]
+            taken[places] = (step - _not_told(normal, scatter, step, length)) / length
         if not np.all(self.able[fixed]):
             taken[:] = np.nan
         return taken, places, effects, np.array(start) + taken[places]
