@@ -197,8 +197,9 @@ def _not_told(normal: FloatArray, scatter: FloatArray, step: FloatArray, length:
     along = ways.T @ step
     variance = np.sum(ways * (scatter @ ways), axis=0) / np.maximum(information, TINY)
     sizes = ways * along / length[:, None]
-    costly = 0.5 * along**2 * information / np.maximum(variance, TINY) < np.sum(np.log1p(sizes**2), axis=0)
-    part: FloatArray = ways @ np.where(costly & (np.max(np.abs(sizes), axis=0) > 1), along, 0.0)
+    gained = 0.5 * along**2 * information / np.maximum(variance, TINY)
+    costly = (gained < np.sum(np.log1p(sizes**2), axis=0)) & (np.max(np.abs(sizes), axis=0) > 1)
+    part: FloatArray = ways @ np.where(costly, along, 0.0)
     return part
 
 
