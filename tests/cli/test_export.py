@@ -39,7 +39,7 @@ def test_answer_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
         ("bench_axis", "x=0.2", "bare number"),
         ("bench_axis", "x=200 N", "length"),
         ("bench_axis", "speed=3 m/min", 'write e.g. --at "x=200 mm,v=3 m/min"'),
-        ("kimm_testbed", "x=1.5 m", "choose x from 0 mm to 1000 mm"),
+        ("kimm_testbed", "x=1.5 m", "choose from 0 mm to 1000 mm"),
         ("no_such_machine", "", "neither a file nor"),
     ],
 )
