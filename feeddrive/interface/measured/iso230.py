@@ -31,6 +31,7 @@ from feeddrive.recording import Recording
 from feeddrive.recording.channels import CHANNEL_UNITS
 from feeddrive.recording.files.opening import first_bytes, head_of
 from feeddrive.recording.traces.opened import could_be_trace
+from feeddrive.report.words.number_text import fixed
 from feeddrive.units.quantity import format_quantity, percent
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ class Iso230(Shown):
         named["left"] = (one.left, percent(one.left.explains, 1))
         named |= {f"left without {key}": (left, percent(left.explains, 1)) for key, left in one.without.items()}
         rows = [
-            [name, *(f"{1e6 * v:.3f} µm" for v in (left.systematic, left.mean_range, left.reversal)), explains]
+            [name, *(f"{fixed(1e6 * v, 3)} µm" for v in (left.systematic, left.mean_range, left.reversal)), explains]
             for name, (left, explains) in named.items()
         ]
         title = "What the plant explains of the mean deviations"
