@@ -18,18 +18,14 @@ from scipy.interpolate import make_interp_spline
 from scipy.signal import firwin
 
 from feeddrive.effects.base import TransmissionEffect
-from feeddrive.engine.engine import Feed, Machine, machine_of, rested, run_machine
-from feeddrive.engine.program import Position, Program, StepReport, joined
-from feeddrive.engine.step.linear_part import Layout
-from feeddrive.engine.step.step import driven_step
+from feeddrive.engine.engine import Feed, rested, run_machine
+from feeddrive.engine.program import Position, StepReport, joined
 from feeddrive.parts.life.consumed_life import ConsumedLife, consumed_life, rigid_nut_forces
 from feeddrive.plant.analysis.rated_life import preload_of
-from feeddrive.plant.chain.chain import symbolic
-from feeddrive.plant.equations import Forces, effect_forces
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import Symbols, chain_symbols, parameter_symbols, parameter_values, per_structure
-from feeddrive.plant.transmission_law import travel_deviation
-from feeddrive.typing import Expression, FloatArray, IntegerArray
+from feeddrive.plant.structure import parameter_values
+from feeddrive.simulate.driven_machine import driven_machine
+from feeddrive.typing import FloatArray, IntegerArray
 
 TOLERANCE = 1e-10
 """Error of the table position that one step may make [m]: the springs to the motor forget it within milliseconds."""
@@ -48,9 +44,6 @@ sample rate, and 1e-4 of what comes back to there from nine tenths and beyond (K
 
 TORQUE = 4
 """Place of the motor torque among what is shown."""
-
-PASSES = 3
-"""For the table position at the start; travel per length is below 1e-3, so each gains three digits."""
 
 LEANING = 1e-6
 """Stretch beyond a flank [m] that the search for the load's rest on it begins with: within the play is no slope."""
@@ -160,7 +153,7 @@ def simulate_driven(
     has shifted goes on bouncing where the machine rests (multiple shooting: Bock and Plitt, IFAC Proceedings 17 (1984)
     1603). Raises SimulationError for a motion that cannot be followed; it says when, and which effect to look at.
     """
-    machine, outputs, beginning, riding = _machine(plant)
+    machine, outputs, beginning, riding = driven_machine(plant)
     values = np.array(parameter_values(plant))
     states = np.zeros(0)
     if machine.program.step.layout.coordinates:
@@ -274,112 +267,6 @@ def unfollowed(motion: MotorMotion) -> LoadMotion:
     report = StepReport(0, 0, 0, 0, 0, np.inf, 0, np.inf, np.inf)
     kept = motion.time[at], motion.angle[at], motion.speed[at]
     return LoadMotion(*kept, nothing, nothing, nothing, nothing, nothing, nothing, report)
-
-
-@per_structure
-def _machine(plant: Plant) -> tuple[Machine, ca.Function, ca.Function, ca.Function]:
-    """What runs a structure, its outputs, its start, and what keeps its load from riding with the motor."""
-    step = driven_step(plant)
-    outputs = _outputs(plant, step.layout)
-    memory, own, fed, settings = (ca.SX.sym(*a) for a in (("m", step.layout.memory), ("o", 0), ("f", 6), ("s", 1)))
-    values = ca.SX.sym("values", outputs.size1_in(5))
-    arguments = [memory, own, fed, settings, values]
-    read = outputs(memory, fed[2], fed[3], fed[4], fed[5] + settings[0], values)
-    before = ca.Function("feeddrive_before", arguments, [own, fed[:4], ca.SX.zeros(0, 1)])
-    after = ca.Function("feeddrive_after", arguments, [read])
-    return (
-        machine_of(Program(step, before, after, 1, plant.chain.varies)),
-        outputs,
-        _start(plant),
-        _riding(plant, step.layout),
-    )
-
-
-def _start(plant: Plant) -> ca.Function:
-    """(theta, theta', parameters) -> free coordinates and rates with no stretch anywhere, travel errors included."""
-    symbols = parameter_symbols(plant)
-    theta, speed, place = (ca.SX.sym(name) for name in ("theta", "speed", "place"))
-    p = chain_symbols(plant, symbols)
-    r, motion = p["lead"] / (2 * math.pi), plant.chain.rigid_motion(p)
-    turned = theta / motion[0]  # r phi
-    delta = travel_deviation(plant, symbols, turned / r, place, ca.SX(0))
-    x = turned
-    for _ in range(PASSES):
-        (found,) = ca.substitute([delta], [place], [x])
-        x = turned + found
-    slopes = ca.substitute([ca.jacobian(delta, theta), ca.jacobian(delta, place)], [place], [x])
-    velocity = speed * (1 / motion[0] + slopes[0]) / (1 - slopes[1])
-    shafts = ca.vertcat(*[entry / motion[0] for entry in motion[1:-1]])
-    return ca.Function(
-        "start", [theta, speed, symbols.vector], [ca.vertcat(theta * shafts, x, speed * shafts, velocity)]
-    )
-
-
-def _outputs(plant: Plant, layout: Layout) -> ca.Function:
-    """(memory, theta, theta', theta'', t, parameters) -> [phi, phi', x, x', motor torque, F of the nut].
-
-    The torque is the motor's row of M q'' + C q' + K q = T + f; what rides with the motor on a common hub moves with
-    the acceleration that the other rows give it.
-    """
-    symbols, given = parameter_symbols(plant), _given(layout)
-    chain, p = plant.chain, chain_symbols(plant, symbols)
-    acceleration, time = given[3:]
-    q, rate, mass, unmoved, found = _unmoved(plant, layout, symbols, given)
-    screw, table = ca.horzcat(*chain.screw(p)), ca.horzcat(*chain.table(p))
-    phi, x = ca.mtimes(screw, q), ca.mtimes(table, q)
-    if chain.elastic:
-        others = ca.solve(ca.sparsify(mass[1:, 1:]), -unmoved[1:] - mass[1:, 0] * acceleration)
-        row = ca.vertcat(acceleration, others)
-    else:
-        row = acceleration / chain.motor(p)[0]
-    torque = (ca.mtimes(mass[0, :], row) + unmoved[0]) / chain.motor(p)[0]
-    if not chain.elastic:
-        x = x + travel_deviation(plant, symbols, phi, x, time)
-    result = ca.vertcat(phi, ca.mtimes(screw, rate), x, ca.mtimes(table, rate), torque, found.transmitted)
-    return ca.Function("outputs", [*given, symbols.vector], [result])
-
-
-def _riding(plant: Plant, layout: Layout) -> ca.Function:
-    """What keeps the load from moving as rigidly as its rates say, for a search for its coordinates.
-
-    (memory, theta, theta', theta'', t, parameters) -> (rows of M q'' + C q' + K q - f without the motor's, how they
-    change with the free coordinates, the table over these).
-    """
-    symbols, given = parameter_symbols(plant), _given(layout)
-    memory, acceleration, free = given[0], given[3], layout.coordinates
-    if not plant.chain.elastic:
-        return ca.Function("riding", [*given, symbols.vector], [ca.SX.zeros(0, 1)] * 3)
-    p = chain_symbols(plant, symbols)
-    _, _, mass, unmoved, _ = _unmoved(plant, layout, symbols, given)
-    motion = plant.chain.rigid_motion(p)
-    along = ca.vertcat(*[entry / motion[0] for entry in motion])
-    rows = (unmoved + ca.mtimes(mass, along) * acceleration)[1:]
-    change = ca.jacobian(rows, memory)[:, :free]
-    table = ca.vertcat(*list(plant.chain.table(p))[1:])
-    return ca.Function("riding", [*given, symbols.vector], [rows, change, table])
-
-
-def _given(layout: Layout) -> list[Expression]:
-    """Symbols (memory, theta, theta', theta'', t)."""
-    names = ("theta", "speed", "acceleration", "time")
-    return [ca.SX.sym("memory", layout.memory), *(ca.SX.sym(name) for name in names)]
-
-
-def _unmoved(
-    plant: Plant, layout: Layout, symbols: Symbols, given: list[Expression]
-) -> tuple[Expression, Expression, Expression, Expression, Forces]:
-    """(q, q', M, C q' + K q - f, forces of effects): M q'' is the motor torque less the fourth."""
-    memory, theta, speed, _, time = given
-    chain, p, free = plant.chain, chain_symbols(plant, symbols), layout.coordinates
-    if chain.elastic:
-        q, rate = ca.vertcat(theta, memory[:free]), ca.vertcat(speed, memory[free : 2 * free])
-    else:
-        q, rate = theta / chain.motor(p)[0], speed / chain.motor(p)[0]
-    x = ca.mtimes(ca.horzcat(*chain.table(p)), q)
-    z = memory[layout.states : layout.states + layout.bristles]
-    found = effect_forces(plant, symbols, q, rate, z, time, None)
-    mass, damping, stiffness = (symbolic(m(p, x)) for m in (chain.mass, chain.damping, chain.stiffness))
-    return q, rate, mass, ca.mtimes(damping, rate) + ca.mtimes(stiffness, q) - found.on_coordinates, found
 
 
 def used_life(
