@@ -78,7 +78,31 @@ def from_declared(run: Run, name: str, floor: Missed) -> float:
     if name not in TOUCHED:
         return distance(target, calibration(run, floor), free=0)
     shares = beyond(next(one for one in run.effects if one.name == name), run.machine)
-    return max(shares.values()) * distance(target, simulated_calibration(run, floor, tuple(shares)), free=0)
+    columns = simulated_calibration(run, floor, tuple(shares))
+    for _ in range(PASSES):
+        solution, lengths = _solved(target, columns, free=0)
+        sizes = np.clip(solution / lengths, -FARTHEST, FARTHEST)
+        target = whitened(floor, *changes_left(run, without, tuple(shares), sizes[2:])) + columns[:, 2:] @ sizes[2:]
+    return max(shares.values()) * distance(target, columns, free=0)
+
+
+def changes_left(run: Run, effects: tuple[Effect, ...], without: tuple[str, ...], sizes: Array) -> tuple[Array, Array]:
+    """Return what a run is over one with other effects, values being off by `sizes` of their tolerances, (rows,) each.
+
+    sizes: one for every group but those `without`, (groups,), as powers of one tolerance: no value changes its sign.
+    """
+    factors, constant = {}, 1.0
+    groups = [one for one in OFF_GROUPS if not set(one[0]) & set(without)]
+    for (names, kind), size in zip(groups, sizes, strict=True):
+        factor = (1.0 + TOLERANCES[kind]) ** float(size)
+        if kind == "torque_constant":
+            constant = factor
+        else:
+            factors |= dict.fromkeys(names, factor)
+    other = dataclasses.replace(run.machine, axis=run.machine.axis.off_by(factors))
+    torque, position = changes(run, effects, other)
+    rows = run.torque[run.rows]
+    return rows - constant * (rows - torque), position
 
 
 def beyond(effect: Effect, machine: Machine) -> dict[str, float]:
@@ -88,6 +112,14 @@ def beyond(effect: Effect, machine: Machine) -> dict[str, float]:
     off = {name: abs(math.log(getattr(after, name) / getattr(before, name))) for name in TOUCHED[effect.name]}
     return {name: 1.0 - math.log1p(TOLERANCES[kinds[name]]) / by for name, by in off.items() if by > 0.0}
 
+
+PASSES = 2
+"""Steps of Gauss and Newton towards the values that come nearest: the first leaves what is of second order in how far
+they are off, a twentieth of a change by a twentieth, which is many standard deviations of a change of hundreds; what
+the second leaves is of third order."""
+
+FARTHEST = 3.0
+"""Tolerances that a value is off by in those simulations at most: three standard deviations of what is known of it."""
 
 STEP = 0.2
 """Tolerances by which a value is off in a simulation that its slope is taken from: small in what a resonance moves by,

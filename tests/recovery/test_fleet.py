@@ -21,6 +21,7 @@ from tests.generator.runs import changes, impedance, run, steps_of
 from tests.generator.telling import (
     beyond,
     calibration,
+    changes_left,
     distance,
     from_declared,
     missed,
@@ -157,6 +158,27 @@ def test_a_value_is_told_by_what_is_beyond_its_tolerance(pair: Case) -> None:
         loaded = dataclasses.replace(bare, effects=(payload,), constants=payload.planted(bare.constants))
         told[share] = from_declared(loaded, "payload", floor)
     assert told[0.04] < 0 < told[0.2]
+
+
+def test_nothing_is_left_of_values_that_are_off_as_far_as_their_sizes_say(pair: Case) -> None:
+    """The plant of a run whose values are off comes back to the last rounding, and only from those sizes."""
+    one = pair.runs[0]
+    sizes = np.random.default_rng(5).normal(size=len(OFF_GROUPS))
+    sizes[[names == ("torque_constant",) for names, _ in OFF_GROUPS].index(True)] = 0.0
+    factors = {
+        name: (1.0 + TOLERANCES[kind]) ** size
+        for (names, kind), size in zip(OFF_GROUPS, sizes, strict=True)
+        for name in names
+    }
+    factors.pop("torque_constant")
+    machine = dataclasses.replace(one.machine, axis=one.machine.axis.off_by(factors))
+    constants = declared_constants(machine.axis)
+    other = run(machine, (), one.setpoint, np.zeros(len(one.setpoint)))
+    assert other.constants == constants
+    declared = dataclasses.replace(other, machine=one.machine)
+    near, far = (changes_left(declared, (), (), values) for values in (sizes, np.zeros_like(sizes)))
+    for left, whole in zip(near, far, strict=True):
+        assert np.linalg.norm(left) < 1e-6 * np.linalg.norm(whole)
 
 
 def test_a_late_torque_shows_in_the_torque_alone(pair: Case) -> None:
