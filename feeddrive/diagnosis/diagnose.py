@@ -54,7 +54,9 @@ from feeddrive.diagnosis.suspicion.suspects import (
     suspected,
 )
 from feeddrive.diagnosis.suspicion.torque_channel import without_torque_sentence
+from feeddrive.diagnosis.unexplained.carry import with_carried
 from feeddrive.diagnosis.unexplained.unexplained import explain_rest, without_stand_ins
+from feeddrive.diagnosis.unexplained.unexplained_result import beside_changes
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
@@ -153,8 +155,11 @@ def _reported(
     budget = begun.problem.budget
     progress("looking at what is left")
     alike = ambiguous_sets(found, settled.rivals)
-    rest = explain_rest(found.problem, found.fit.effects, judged, channel_results(found.problem, judged))
     compared, known = compared_recordings(searched, judged), certainty(found.problem, found.fit)
+    allowed = compared.allowed(judged)  # what is stated to differ is not left
+    rest = explain_rest(found.problem, found.fit.effects, allowed, channel_results(found.problem, allowed))
+    after = with_carried(judged, *rest.effects)
+    unexplained = rest.unexplained if allowed is judged else beside_changes(rest.unexplained)
     spans = all_intervals(found.problem, found.fit, known)
     effects = machine_as_last(searched, compared.listed)
     count = len(without_shifts(found.fit.effects))
@@ -166,16 +171,16 @@ def _reported(
         plant=plant.name,
         fit=_stamps(recordings),
         validate=_stamps(validation or recordings),
-        channels=channel_results(found.problem, rest.judged),
+        channels=channel_results(found.problem, after),
         effects=with_carrying(effect_results(found, shares, spans, odds_for(found, settled.rivals)), compared),
         possible=possible_effects(found, settled.rivals),
         refused=refused_effects(found),
         ambiguous=tuple(one.names for one in alike),
         rehomed=settled.rehomed,
-        unexplained=rest.unexplained,
+        unexplained=unexplained,
         trials=found.trials,
-        recordings=judged_recordings(found.problem, rest.judged),
-        simulation=refinement.reported(rest.judged if rest.effects else judged),
+        recordings=judged_recordings(found.problem, after),
+        simulation=refinement.reported(after if rest.effects else judged),
         changes=compared.changes,
         quality=(
             *begun.quality,

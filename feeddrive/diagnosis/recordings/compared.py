@@ -48,6 +48,10 @@ class Compared:
     judged: JudgedChanges | None
     listed: tuple[bool, ...]
 
+    def allowed(self, judged: Sequence[Judged]) -> Sequence[Judged]:
+        """The judged recordings with what differs in them in the plant after; as they are where nothing does."""
+        return judged if self.judged is None or not self.judged.changes.targets else self.judged.allowed
+
 
 def compared_recordings(searched: Searched, judged: Sequence[Judged]) -> Compared:
     """Differences between the fitted recordings, and of the judged ones from them."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from feeddrive.effects.tabulated import Tabulated
@@ -270,6 +270,12 @@ def no_gain(explains: Mapping[str, float]) -> str:
     """Why a tabulated effect is not carried that does not pay on the judged data."""
     shares = ", ".join(f"{percent(share, 1)} of {name}" for name, share in explains.items())
     return f"not carried, since a table of it does not lower the error on data not fitted enough ({shares})"
+
+
+def beside_changes(left: Mapping[str, Unexplained]) -> dict[str, Unexplained]:
+    """What is left of judged recordings with what differs in them allowed for, said so."""
+    said = "What differs in the judged recordings is allowed for here."
+    return {name: replace(one, statement=f"{said} {one.statement}") for name, one in left.items()}
 
 
 def rest_in_words(unit: str, rest: Unexplained, lost: Sequence[Dependence], after: float | None) -> str:

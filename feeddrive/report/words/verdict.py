@@ -83,15 +83,23 @@ def _above_noise(diagnosis: Diagnosis) -> list[str]:
         if channel.after.rms > 1.02 * channel.before.rms:
             than = "the effects than without" if diagnosis.effects else "the calibrated values than with the declared"
             sentences.append(f"{_begin(plain(channel.name))} is predicted worse with {than}.")
-        if noise_multiple(channel) > _NOISE_REACHED:
+        if _left_multiple(diagnosis, channel) > _NOISE_REACHED:
             sentences.append(_left(diagnosis, channel))
     return sentences
 
 
+def _left_multiple(diagnosis: Diagnosis, channel: ChannelResult) -> float:
+    """`noise_multiple` without what the changes between the recordings explain of the error."""
+    return noise_multiple(channel) * math.sqrt(
+        1 - min(max(diagnosis.changes.explains.get(channel.name, 0.0), 0.0), 1.0)
+    )
+
+
 def _left(diagnosis: Diagnosis, channel: ChannelResult) -> str:
     """How much of a channel is left above noise and what it depends on."""
-    multiple = significant(noise_multiple(channel), 2)
-    left = f"Still unexplained: the error of {plain(channel.name)} is {multiple} times the sensor noise"
+    multiple = significant(_left_multiple(diagnosis, channel), 2)
+    beside = "beside what changed, " if diagnosis.changes.explains.get(channel.name, 0.0) > 0.0 else ""
+    left = f"Still unexplained: {beside}the error of {plain(channel.name)} is {multiple} times the sensor noise"
     known = diagnosis.unexplained.get(channel.name)
     if known is None or not known.depends_on:
         return f"{left}."
