@@ -23,6 +23,7 @@ from feeddrive.diagnosis.finding.refitting import (
     begun_as_declared,
     refitted,
     where_friction_brakes,
+    with_scale_beyond,
     with_value_beyond,
 )
 from feeddrive.diagnosis.finding.round import Round, one_round
@@ -139,6 +140,10 @@ def search(
             impossible |= denied
             problem, found = refitted(problem, fit(problem, _without(found, others)))
         left_out = problem.budget.skips("declared values beyond their tolerances")
+        scaled = None if left_out else with_scale_beyond(problem, found)
+        if scaled is not None:  # the recorder is asked before the machine
+            problem, found = scaled
+            continue
         beyond = None if left_out else with_value_beyond(problem, found)
         if beyond is not None and _members(beyond[1]) not in met:
             instead = _curve_of_value(problem, found, beyond, asked.now.count)
