@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, fitted_together
+from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, fitted_together, with_torque_scale
 from feeddrive.diagnosis.calibration.calibrate import (
     at_declared,
     of_hours,
@@ -75,6 +75,12 @@ def begun_as_declared(problem: Problem, found: Fit) -> tuple[Problem, Fit] | Non
         return None
     there = with_new_slopes(at_declared(problem), found.effects)
     return there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
+
+
+def with_scale_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:
+    """A set beside a scale of the torque that is free of its tolerance, where that explains all; else None."""
+    freed = with_torque_scale(problem, found)
+    return None if freed is None else refitted(freed, fit(freed, found.effects))
 
 
 def with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit, Comparison] | None:

@@ -23,6 +23,7 @@ from feeddrive.diagnosis.finding.refitting import (
     begun_as_declared,
     refitted,
     where_friction_brakes,
+    with_scale_beyond,
     with_value_beyond,
 )
 from feeddrive.diagnosis.finding.round import Round, one_round
@@ -30,6 +31,7 @@ from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.spring_law import soft_everywhere
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.law_curve import has_curve
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
@@ -138,9 +140,17 @@ def search(
             impossible |= denied
             problem, found = refitted(problem, fit(problem, _without(found, others)))
         left_out = problem.budget.skips("declared values beyond their tolerances")
+        scaled = None if left_out else with_scale_beyond(problem, found)
+        if scaled is not None:  # the recorder is asked before the machine
+            problem, found = scaled
+            continue
         beyond = None if left_out else with_value_beyond(problem, found)
         if beyond is not None and _members(beyond[1]) not in met:
-            met |= {_members(found), _members(beyond[1])}
+            instead = _curve_of_value(problem, found, beyond, asked.now.count)
+            met |= {_members(found), _members((instead or beyond)[1])}
+            if instead is not None:
+                problem, found = instead
+                continue
             problem, found, by = beyond
             trials.append(Trial(number, found.effects[-1].name, by.gain, by.standard_error, True))
         elif not others:
@@ -192,6 +202,22 @@ def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
             if odds > best and _level(opened, there) * LEVEL**2 < 1:
                 best, chosen = odds, (opened, without)
     return chosen
+
+
+def _curve_of_value(
+    problem: Problem, found: Fit, beyond: tuple[Problem, Fit, Comparison], count: int
+) -> tuple[Problem, Fit] | None:
+    """A set beside the curve of one of its laws, where that is likelier than a declared value beyond its tolerance.
+
+    A law of another form than ours draws declared values along, each as far as it helps.
+    """
+    if not has_curve(found.effects):
+        return None
+    odds, opened = likeliest_curve(problem, found, count)
+    if odds <= max(odds_between(Standing(problem, found), Standing(*beyond[:2]), count), 0.0):
+        return None
+    there = fit(opened, found.effects, iterations=JOINT_ITERATIONS)
+    return refitted(opened, there) if _level(opened, there) * LEVEL**2 < 1 else None
 
 
 def _level(problem: Problem, found: Fit) -> float:
