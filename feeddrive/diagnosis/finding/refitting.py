@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, fitted_together, said_by_effects
+from feeddrive.diagnosis.calibration.beyond import (
+    beyond_tolerance,
+    fitted_together,
+    is_within_tolerance,
+    said_by_effects,
+)
 from feeddrive.diagnosis.calibration.calibrate import (
     at_declared,
     of_hours,
@@ -14,6 +19,7 @@ from feeddrive.diagnosis.calibration.calibrate import (
 )
 from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
+from feeddrive.diagnosis.finding.spring_law import TOLD
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
@@ -53,7 +59,7 @@ def balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
 
 
 def as_payload(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
-    """A set with a payload where it has a mode, and is likelier so; else as it is.
+    """A set with a payload where it has a mode, unless the mode is told from it, as surely as names are; else as it is.
 
     A mode beyond the band, or of strong damping, is a payload of its mass. Where the table's mass is fitted within its
     tolerance a payload is no candidate, so that the mode is there compared with none.
@@ -71,7 +77,8 @@ def as_payload(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
     rest = (*found.effects[:place], *found.effects[place + 1 :])
     there, effects = said_by_effects(problem, (*rest, payload))
     other = refitted(there, fit(there, effects, iterations=JOINT_ITERATIONS))
-    return other if odds_between(Standing(problem, found), Standing(*other), count) > 0 else (problem, found)
+    told = odds_between(Standing(*other), Standing(problem, found), count) > TOLD
+    return (problem, found) if told else other
 
 
 def where_friction_brakes(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
@@ -106,13 +113,15 @@ def with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit, Compa
 
     Free of its tolerance a value can only lower the error, a row being worth as much in both sets. Where it does not,
     slopes alone said so: beside a free play a step of a value moves the contacts, and what the slope then tells holds
-    for that step.
+    for that step. Slopes alone said so as well of a value that comes to lie within its tolerance once it is free.
     """
     beyond = beyond_tolerance(problem, found)
     if beyond is None:
         return None
     freed, effect = beyond
     there, result = refitted(freed, fit(freed, (*found.effects, effect)))
+    if is_within_tolerance(result.effects[-1], problem.plant):
+        return None
     alike = there.weighed(problem.evidence[0].left)
     same = result if alike is there else fit(alike, result.effects, iterations=0)
     assert problem.calibration is not None and there.calibration is not None
