@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration import calibrate
-from feeddrive.diagnosis.calibration.beyond import said_by_effects
 from feeddrive.diagnosis.calibration.calibrate import calibrated, recalibrated
 from feeddrive.diagnosis.finding import refitting
 from feeddrive.diagnosis.finding import search as of_search
@@ -73,18 +72,6 @@ def test_a_value_is_weighed_with_rows_worth_as_much_in_both_sets(
     assert taken is not None
     assert taken[1].squared_error > found.squared_error  # each by what its own rows are worth
     assert [one.name for one in taken[1].effects] == [Payload.name]
-
-
-def test_a_value_that_comes_to_lie_within_its_tolerance_is_not_beyond_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Slopes may say so of a value that, once it is free, lies where its tolerance would have it."""
-    for truth, is_named in ((Truth(), False), (Truth(mass=0.25 * MASS), True)):
-        problem = calibrated(begun(tmp_path, truth))
-        found = fit(problem, ())
-        said = said_by_effects(problem, [Payload.of(mass=0.25 * MASS)])
-        monkeypatch.setattr(refitting, "beyond_tolerance", lambda *_, said=said: (said[0], said[1][0]))
-        assert (with_value_beyond(problem, found) is not None) == is_named
 
 
 def test_slopes_of_machines_that_cannot_be_simulated_move_no_value(

@@ -4,12 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import (
-    beyond_tolerance,
-    fitted_together,
-    is_within_tolerance,
-    said_by_effects,
-)
+from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, fitted_together, said_by_effects
 from feeddrive.diagnosis.calibration.calibrate import (
     at_declared,
     of_hours,
@@ -113,15 +108,13 @@ def with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit, Compa
 
     Free of its tolerance a value can only lower the error, a row being worth as much in both sets. Where it does not,
     slopes alone said so: beside a free play a step of a value moves the contacts, and what the slope then tells holds
-    for that step. Slopes alone said so as well of a value that comes to lie within its tolerance once it is free.
+    for that step.
     """
     beyond = beyond_tolerance(problem, found)
     if beyond is None:
         return None
     freed, effect = beyond
     there, result = refitted(freed, fit(freed, (*found.effects, effect)))
-    if is_within_tolerance(result.effects[-1], problem.plant):
-        return None
     alike = there.weighed(problem.evidence[0].left)
     same = result if alike is there else fit(alike, result.effects, iterations=0)
     assert problem.calibration is not None and there.calibration is not None
