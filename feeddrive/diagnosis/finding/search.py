@@ -19,6 +19,7 @@ from feeddrive.diagnosis.finding.likelier import Near, Taken, likelier, of_likel
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_map, with_curves_of
 from feeddrive.diagnosis.finding.refitting import (
+    as_payload,
     balanced,
     begun_as_declared,
     refitted,
@@ -117,11 +118,11 @@ def search(
         if unnamed is not None:
             problem, found = refitted(*unnamed)
             continue
-        after = _refitted_with(asked.taken, found)
+        after = _refitted_with(asked, found)
         begin = begun_as_declared(problem, found)
         if begin is not None:
             other = _asked(*begin, impossible, denied, number)
-            there, here = _refitted_with(other.taken, begin[1]), after or (problem, found)
+            there, here = _refitted_with(other, begin[1]), after or (problem, found)
             if there is not None and odds_between(Standing(*here), Standing(*there), asked.now.count) > 0:
                 asked, near, after = other, other.near, there
         rounds.append(tuple(attempt.for_the_record() for attempt in asked.now.attempts))
@@ -226,12 +227,14 @@ def _level(problem: Problem, found: Fit) -> float:
     return left**2 * found.squared_error / max(len(found.residual), 1)
 
 
-def _refitted_with(taken: Taken | None, found: Fit) -> tuple[Problem, Fit] | None:
+def _refitted_with(asked: _Asked, found: Fit) -> tuple[Problem, Fit] | None:
     """A likelier set, declared values fitted beside it; what left the set at hand takes its value and curve along."""
+    taken = asked.taken
     if taken is None:
         return None
     problem = without_effects(taken.problem, found.effects, taken.fit.effects)
-    return refitted(with_curves_of(problem, taken.fit.effects), taken.fit)
+    there = refitted(with_curves_of(problem, taken.fit.effects), taken.fit)
+    return as_payload(*there, asked.now.count)
 
 
 def _ended(problem: Problem, found: Fit) -> tuple[Problem, Fit, list[Effect]]:
