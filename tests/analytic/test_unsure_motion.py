@@ -10,8 +10,8 @@ import pytest
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
-from feeddrive.diagnosis.motion.encoder_error import known_motion_of
 from feeddrive.diagnosis.motion.preparing import weighed_by
+from feeddrive.diagnosis.motion.smoothest_motion import smoothest_motion
 from feeddrive.diagnosis.motion.unsure_motion import HALF, LEAST, unsure_motions
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.suspicion.logged import declared_hold
@@ -139,5 +139,5 @@ def test_strokes_at_constant_speed_are_told_by_a_fine_encoder() -> None:
     strokes = 30.0 * np.abs((np.arange(rows) / RATE / 0.9) % 2 - 1)  # of 30 rad in 0.9 s, cut out of a long run
     turning = np.hanning(123)[1:-1]
     angle = np.convolve(np.pad(strokes, 60, mode="edge"), turning / np.sum(turning), mode="valid")
-    left = known_motion_of(step * np.round(angle / step), step, 1 / RATE)[0] - angle
+    left = smoothest_motion(step * np.round(angle / step), step) - angle
     assert np.max(np.abs(left[250:-250])) < step  # half a second at either end is not compared

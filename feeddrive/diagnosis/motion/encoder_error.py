@@ -99,8 +99,7 @@ def encoder_error(
     if step <= 0 or round(WINDOW / sample_time) < 16 or len(angle) < 4 * round(WINDOW / sample_time):
         return None
     time: FloatArray = np.arange(len(angle), dtype=np.float64) * sample_time
-    expected, share = known_motion_of(angle, step, sample_time)
-    errors = [drawn_error(expected, step, draw) for draw in range(DRAWS)]
+    expected, errors, share = known_motion_of(angle, step, sample_time)
     told: FloatArray = np.zeros(len(angle))
     try:
         if acting is not None and not proportional and np.all(np.isfinite(acting)):
@@ -145,8 +144,10 @@ def encoder_error(
     )
 
 
-def known_motion_of(angle: FloatArray, step: float, sample_time: float) -> tuple[FloatArray, FloatArray]:
-    """The motion that is expected, (n,), and the share of the error in it.
+def known_motion_of(
+    angle: FloatArray, step: float, sample_time: float
+) -> tuple[FloatArray, list[FloatArray], FloatArray]:
+    """The motion that is expected, (n,), errors that are drawn of it, (n,) each, and the share of them in its power.
 
     Args:
         angle: as the encoder gives it, (n,).
@@ -155,8 +156,7 @@ def known_motion_of(angle: FloatArray, step: float, sample_time: float) -> tuple
     """
     expected = smoothest_motion(angle, step)
     errors = [drawn_error(expected, step, draw) for draw in range(DRAWS)]
-    share = _share_of_error(expected, errors, sample_time)
-    return expected, share
+    return expected, errors, _share_of_error(expected, errors, sample_time)
 
 
 def _answer(run: LoadMotion, name: str) -> FloatArray:
