@@ -10,9 +10,9 @@ import pytest
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
-from feeddrive.diagnosis.motion.encoder_error import DRAWS, _share_of_error, drawn_error, expected_motion
 from feeddrive.diagnosis.motion.preparing import weighed_by
-from feeddrive.diagnosis.motion.unsure_motion import HALF, LEAST, unsure_motions, without_share
+from feeddrive.diagnosis.motion.smoothest_motion import smoothest_motion
+from feeddrive.diagnosis.motion.unsure_motion import HALF, LEAST, unsure_motions
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.suspicion.logged import declared_hold
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
@@ -72,19 +72,6 @@ def test_a_sure_motion_has_no_parts() -> None:
     assert list(unsure_motions(burst(20.0), share, 1 / RATE, EDGE)) == []
 
 
-def test_what_is_more_error_than_motion_is_left_out() -> None:
-    angle, hertz = burst(10.0) + burst(30.0), np.fft.rfftfreq(len(TIME), 1 / RATE)
-    kept = without_share(angle, np.where(hertz > 20.0, HALF, 0.1), 1 / RATE)
-    np.testing.assert_allclose(kept, 0.9 * burst(10.0), atol=0.01e-3)
-
-
-def test_the_stroke_is_left_alone() -> None:
-    stroke = 40 * (1 - np.cos(2 * np.pi * np.clip((TIME - 2) / 4, 0, 1)))
-    share = np.where(np.fft.rfftfreq(len(TIME), 1 / RATE) > 15.0, 1.0, 0.0)
-    # begun and ended with a jump of acceleration, whose part beyond 15 Hz is a ten-thousandth of a radian
-    np.testing.assert_allclose(without_share(stroke, share, 1 / RATE), stroke, atol=5e-3)
-
-
 @pytest.fixture(scope="module")
 def problem(tmp_path_factory: pytest.TempPathFactory) -> Problem:
     plant_file, fitted, judged = case(COARSE).write(tmp_path_factory.mktemp("coarse"))
@@ -99,6 +86,11 @@ def test_a_plant_that_filters_the_motion_gains_nothing(problem: Problem) -> None
     rows, sample_time = evidence.thinned(evidence.fit_rows), evidence.recording.sample_time
     hertz = np.fft.rfftfreq(len(rows), sample_time)
 
+    def lost(angle: FloatArray, share: FloatArray) -> FloatArray:
+        acceleration = np.concatenate([[0.0], np.diff(angle, 2), [0.0]])
+        less = np.fft.irfft(np.fft.rfft(acceleration) * share, len(angle))
+        return np.cumsum(np.cumsum(less))
+
     def error(motion: MotorMotion) -> float:
         led = replace(evidence, motion=replace(motion, time=evidence.motion.time))
         predicted = evidence.weighted(problem.predictor.predict(problem.plant, led), rows)
@@ -106,7 +98,7 @@ def test_a_plant_that_filters_the_motion_gains_nothing(problem: Problem) -> None
 
     angle, whole = evidence.motion.angle[evidence.motion.samples], error(evidence.motion)
     for corner in (20.0, 25.0, 30.0, 36.0, 45.0):
-        slow = without_share(angle, np.minimum(HALF * (hertz / corner) ** 4, 1.0), sample_time)
+        slow = angle - lost(angle, np.minimum(HALF * (hertz / corner) ** 4, 1.0))
         less = error(motor_motion(np.arange(len(angle)) * sample_time, slow))
         # ten is what three values cost; with the steps' error in the motion it is a thousand
         assert 0.5 * (whole - less) < 10.0 * whole / (2 * rows.sum()), corner
@@ -147,8 +139,5 @@ def test_strokes_at_constant_speed_are_told_by_a_fine_encoder() -> None:
     strokes = 30.0 * np.abs((np.arange(rows) / RATE / 0.9) % 2 - 1)  # of 30 rad in 0.9 s, cut out of a long run
     turning = np.hanning(123)[1:-1]
     angle = np.convolve(np.pad(strokes, 60, mode="edge"), turning / np.sum(turning), mode="valid")
-    expected = expected_motion(step * np.round(angle / step), step, 1 / RATE)
-    errors = [drawn_error(expected, step, 1 / RATE, draw) for draw in range(DRAWS)]
-    share = _share_of_error(expected, errors, 1 / RATE)
-    left = without_share(expected, share, 1 / RATE) - angle
+    left = smoothest_motion(step * np.round(angle / step), step) - angle
     assert np.max(np.abs(left[250:-250])) < step  # half a second at either end is not compared

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.finding.refitting import as_payload
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.spring_law import odds_between
 from feeddrive.diagnosis.likelihood.fit import fit
@@ -22,6 +23,7 @@ from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.diagnosis.starts import mode, transmission_starts
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
+from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.recording import Recording
 from tests.generator import effects as planted
 from tests.generator import recording_pair, sized
@@ -101,6 +103,22 @@ def test_nothing_is_read_off_a_null(axis: str, name: str) -> None:
 @pytest.mark.parametrize("axis", list(AXES))
 def test_payload_is_no_mode_in_the_band(axis: str) -> None:
     assert started(problem_of(axis, planted.Payload(mass=5.0)), "structural_mode") == []
+
+
+@pytest.mark.parametrize("mass", [8.0, 25.0])
+def test_mode_that_says_no_more_than_a_payload_becomes_it(mass: float) -> None:
+    problem = problem_of("bench", planted.Payload(mass=mass))
+    for frequency, damping in ((1000.0, 0.1), (400.0, 2.0)):  # beyond the band, and of strong damping
+        found = fit(problem, (StructuralMode.of(mass=mass, frequency=frequency, damping=damping),))
+        _, instead = as_payload(problem, found, 50)
+        assert [effect.name for effect in instead.effects] == ["payload"]
+        assert instead.effects[0].values["mass"] == pytest.approx(mass, rel=0.01)
+
+
+def test_mode_in_the_band_does_not_become_a_payload() -> None:
+    problem = problem_of("bench", example("bench", "structural_mode"))
+    found = fit(problem, (in_the_package(example("bench", "structural_mode"), "bench"),))
+    assert as_payload(problem, found, 50)[1] is found
 
 
 def test_softer_spring_everywhere_does_not_fall_along_the_stroke() -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration import calibrate
+from feeddrive.diagnosis.calibration.beyond import with_torque_scale
 from feeddrive.diagnosis.calibration.calibrate import calibrated, recalibrated
 from feeddrive.diagnosis.finding import refitting
 from feeddrive.diagnosis.finding import search as of_search
@@ -89,3 +90,26 @@ def test_slopes_of_machines_that_cannot_be_simulated_move_no_value(
 
     monkeypatch.setattr(calibrate, "with_new_slopes", none_there)
     assert recalibrated(problem, ()) is problem
+
+
+def test_the_scale_of_the_torque_goes_before_the_machine_only_where_it_is_the_likelier(tmp_path: Path) -> None:
+    fit_to, judged = rigid_run("a", Truth()), rigid_run("b", Truth())
+    path = tmp_path / "scaled.toml"
+    path.write_text(PLANT, encoding="utf-8")
+    scaled = [
+        one.with_channels({"motor_torque": 1.3 * one["motor_torque"]}) for one in (fit_to, judged)
+    ]  # far beyond the tolerance of a torque constant, and of every value of the machine
+    problem = calibrated(prepared(read_plant(path), scaled[:1], scaled[1:], 0.75)[0])
+    freed = with_torque_scale(problem, fit(problem, ()))
+    assert freed is not None and freed.calibration is not None
+    values = {
+        value.key: (value, at)
+        for value, at in zip(freed.calibration.values, freed.calibration.coordinates, strict=True)
+    }
+    value, at = values["torque_constant"]
+    assert value.tolerance == pytest.approx(0.05)  # as declared, however free it is
+    assert np.exp(-at * value.deviation) == pytest.approx(1.3, rel=0.1)  # masses and frictions have tolerances as well
+    assert with_torque_scale(freed, fit(freed, ())) is None  # once
+
+    machine = calibrated(begun(tmp_path, Truth(mass=0.5 * MASS)))
+    assert with_torque_scale(machine, fit(machine, ())) is None

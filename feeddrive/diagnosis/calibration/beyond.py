@@ -67,6 +67,46 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
     return freed, together[-1]
 
 
+def with_torque_scale(problem: Problem, found: Fit) -> Problem | None:
+    """The problem with the scale of the torque free of its tolerance; None where a declared value explains as much.
+
+    It is the recorder's and not the machine's: a peak current for an rms one, a wrong constant. It goes first where it
+    is the likeliest of all that explain the recordings, and no other value is beyond its tolerance beside it.
+    """
+    known = known_values(problem, found)
+    if known is None or not _is_of_torque(known):
+        return None
+    placed = placed_by_scatter(problem, found)
+    if placed is None or not _is_of_torque(placed):
+        return None
+    (place,) = _torque_scale(known)
+    return _with_free_values(problem, found.effects, (place,))
+
+
+def _torque_scale(known: Known) -> tuple[int, ...]:
+    """Place of the torque constant where it is fitted within a tolerance; none where it is not."""
+    return tuple(i for i, value in enumerate(known.values) if value.key == "torque_constant" and value.widened == 1)
+
+
+def _is_of_torque(known: Known) -> bool:
+    """Whether a free scale of the torque is the likeliest of what puts the others within their tolerances."""
+    scale = _torque_scale(known)
+    if not scale:
+        return False
+    gained, gain = _gained(known), known.least() - known.least(*scale)
+    if gain <= _sure(scale):
+        return False
+    left = known.least(*scale)
+    if any(left - known.least(*scale, *places) > _sure(places) for places in gained):
+        return False
+
+    def cost(places: Sequence[int]) -> float:
+        return known.likeliest({i: BEYOND / known.values[i].deviation for i in places})[1]
+
+    alike = [places for places, its in gained.items() if its > gain - AGAINST]
+    return all(cost(scale) <= cost(places) for places in alike)
+
+
 def _sure(places: Sequence[int]) -> float:
     """What T is lowered by, by chance, by values that are free of their tolerances, as seldom as `SURE` deviations."""
     return float(chdtri(len(places), math.erfc(SURE / math.sqrt(2))))
@@ -119,7 +159,8 @@ def _with_free_values(problem: Problem, effects: Sequence[Effect], places: Seque
     values = [*known.values]
     for place in places:
         wider[place] = max(BEYOND / values[place].deviation, 1.0)
-        values[place] = replace(values[place], deviation=values[place].deviation * float(wider[place]))
+        by = float(wider[place])
+        values[place] = replace(values[place], deviation=values[place].deviation * by, widened=by)
     slopes = {of: {name: rows * wider for name, rows in one.items()} for of, one in known.slopes.items()}
     more = known.number_slopes * wider if known.number_slopes.size else known.number_slopes
     free = Calibration(tuple(values), known.coordinates / wider, slopes, known.variance, more)
@@ -161,6 +202,7 @@ def given_back(problem: Problem, effect: Effect) -> Problem:
         return problem
     old = {value.key: i for i, value in enumerate(known.values)}
     values = [v for v in calibrated_values(problem.plant) if v.key in old or (v.name and is_said_by(v, effect))]
+    values = [known.values[old[v.key]] if v.key in old else v for v in values]
     from_old = [old.get(value.key, len(old)) for value in values]  # the last column is one of zeros
 
     def placed(rows: FloatArray) -> FloatArray:

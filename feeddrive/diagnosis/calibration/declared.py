@@ -60,6 +60,7 @@ class CalibratedValue:
         name: effect that says so beyond the tolerance; empty where none does.
         place: of that effect.
         written: where it stands in a plant file: dotted key, unit and declared value [SI] of each.
+        widened: factor on the deviation of a value that is free of its tolerance.
     """
 
     key: str
@@ -70,11 +71,12 @@ class CalibratedValue:
     name: str = ""
     place: str = ""
     written: tuple[tuple[str, str, float], ...] = ()
+    widened: float = 1.0
 
     @property
     def tolerance(self) -> float:
-        """As a share: twice the deviation."""
-        return math.expm1(2 * self.deviation)
+        """As declared, as a share: twice the deviation that it has then."""
+        return math.expm1(2 * self.deviation / self.widened)
 
     @property
     def scales_with_force(self) -> float:

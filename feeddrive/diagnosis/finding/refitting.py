@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, fitted_together
+from feeddrive.diagnosis.calibration.beyond import (
+    beyond_tolerance,
+    fitted_together,
+    said_by_effects,
+    with_torque_scale,
+)
 from feeddrive.diagnosis.calibration.calibrate import (
     at_declared,
     of_hours,
@@ -14,10 +19,13 @@ from feeddrive.diagnosis.calibration.calibrate import (
 )
 from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
+from feeddrive.diagnosis.finding.spring_law import TOLD
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.chain.structural_mode import StructuralMode
 
 
 def refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
@@ -50,6 +58,29 @@ def balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     return problem, found
 
 
+def as_payload(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
+    """A set with a payload where it has a mode, unless the mode is told from it, as surely as names are; else as it is.
+
+    A mode beyond the band, or of strong damping, is a payload of its mass. Where the table's mass is fitted within its
+    tolerance a payload is no candidate, so that the mode is there compared with none.
+
+    Args:
+        problem: recordings.
+        found: the set.
+        count: candidates and starts that were tried.
+    """
+    names = [effect.name for effect in found.effects]
+    if StructuralMode.name not in names or Payload.name in names:
+        return problem, found
+    place = names.index(StructuralMode.name)
+    payload = Payload.of(mass=found.effects[place].values["mass"])
+    rest = (*found.effects[:place], *found.effects[place + 1 :])
+    there, effects = said_by_effects(problem, (*rest, payload))
+    other = refitted(there, fit(there, effects, iterations=JOINT_ITERATIONS))
+    told = odds_between(Standing(*other), Standing(problem, found), count) > TOLD
+    return (problem, found) if told else other
+
+
 def where_friction_brakes(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     """A set beside values with which friction takes power; begun as declared where it would push the axis.
 
@@ -75,6 +106,12 @@ def begun_as_declared(problem: Problem, found: Fit) -> tuple[Problem, Fit] | Non
         return None
     there = with_new_slopes(at_declared(problem), found.effects)
     return there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
+
+
+def with_scale_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:
+    """A set beside a scale of the torque that is free of its tolerance, where that explains all; else None."""
+    freed = with_torque_scale(problem, found)
+    return None if freed is None else refitted(freed, fit(freed, found.effects))
 
 
 def with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit, Comparison] | None:

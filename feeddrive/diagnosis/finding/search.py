@@ -19,10 +19,12 @@ from feeddrive.diagnosis.finding.likelier import Near, Taken, likelier, of_likel
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_map, with_curves_of
 from feeddrive.diagnosis.finding.refitting import (
+    as_payload,
     balanced,
     begun_as_declared,
     refitted,
     where_friction_brakes,
+    with_scale_beyond,
     with_value_beyond,
 )
 from feeddrive.diagnosis.finding.round import Round, one_round
@@ -30,6 +32,7 @@ from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.spring_law import soft_everywhere
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.law_curve import has_curve
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
@@ -115,11 +118,11 @@ def search(
         if unnamed is not None:
             problem, found = refitted(*unnamed)
             continue
-        after = _refitted_with(asked.taken, found)
+        after = _refitted_with(asked, found)
         begin = begun_as_declared(problem, found)
         if begin is not None:
             other = _asked(*begin, impossible, denied, number)
-            there, here = _refitted_with(other.taken, begin[1]), after or (problem, found)
+            there, here = _refitted_with(other, begin[1]), after or (problem, found)
             if there is not None and odds_between(Standing(*here), Standing(*there), asked.now.count) > 0:
                 asked, near, after = other, other.near, there
         rounds.append(tuple(attempt.for_the_record() for attempt in asked.now.attempts))
@@ -138,9 +141,17 @@ def search(
             impossible |= denied
             problem, found = refitted(problem, fit(problem, _without(found, others)))
         left_out = problem.budget.skips("declared values beyond their tolerances")
+        scaled = None if left_out else with_scale_beyond(problem, found)
+        if scaled is not None:  # the recorder is asked before the machine
+            problem, found = scaled
+            continue
         beyond = None if left_out else with_value_beyond(problem, found)
         if beyond is not None and _members(beyond[1]) not in met:
-            met |= {_members(found), _members(beyond[1])}
+            instead = _curve_of_value(problem, found, beyond, asked.now.count)
+            met |= {_members(found), _members((instead or beyond)[1])}
+            if instead is not None:
+                problem, found = instead
+                continue
             problem, found, by = beyond
             trials.append(Trial(number, found.effects[-1].name, by.gain, by.standard_error, True))
         elif not others:
@@ -194,18 +205,36 @@ def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
     return chosen
 
 
+def _curve_of_value(
+    problem: Problem, found: Fit, beyond: tuple[Problem, Fit, Comparison], count: int
+) -> tuple[Problem, Fit] | None:
+    """A set beside the curve of one of its laws, where that is likelier than a declared value beyond its tolerance.
+
+    A law of another form than ours draws declared values along, each as far as it helps.
+    """
+    if not has_curve(found.effects):
+        return None
+    odds, opened = likeliest_curve(problem, found, count)
+    if odds <= max(odds_between(Standing(problem, found), Standing(*beyond[:2]), count), 0.0):
+        return None
+    there = fit(opened, found.effects, iterations=JOINT_ITERATIONS)
+    return refitted(opened, there) if _level(opened, there) * LEVEL**2 < 1 else None
+
+
 def _level(problem: Problem, found: Fit) -> float:
     """Weighted squared error per row, of the channel that is met worst by its noise."""
     left = max((value for e in problem.evidence for value in e.left.values()), default=1.0)
     return left**2 * found.squared_error / max(len(found.residual), 1)
 
 
-def _refitted_with(taken: Taken | None, found: Fit) -> tuple[Problem, Fit] | None:
+def _refitted_with(asked: _Asked, found: Fit) -> tuple[Problem, Fit] | None:
     """A likelier set, declared values fitted beside it; what left the set at hand takes its value and curve along."""
+    taken = asked.taken
     if taken is None:
         return None
     problem = without_effects(taken.problem, found.effects, taken.fit.effects)
-    return refitted(with_curves_of(problem, taken.fit.effects), taken.fit)
+    there = refitted(with_curves_of(problem, taken.fit.effects), taken.fit)
+    return as_payload(*there, asked.now.count)
 
 
 def _ended(problem: Problem, found: Fit) -> tuple[Problem, Fit, list[Effect]]:

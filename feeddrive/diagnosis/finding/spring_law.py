@@ -30,7 +30,8 @@ from feeddrive.errors import InputError
 LAWS = (Backlash.name, PreloadLoss.name)
 
 TOLD = math.log(20.0)
-"""Logarithm of the odds, by the samples alone, from which the force of a lost preload is told: as names are."""
+"""Logarithm of the odds from which the force of a lost preload, by the samples alone, or the frequency of a mode is
+told: as names are."""
 
 BEYOND = 10.0
 """Force over the greatest that is transmitted, beyond which no preload is regained in a recording."""

@@ -136,7 +136,9 @@ def beyond_its_constant(problem: Problem, found: Fit) -> tuple[Quality, ...]:
     if known is None:
         return ()
     for place, one in enumerate(calibrated_list(problem, found)):
-        if one.value.key == "torque_constant" and known.least() - known.least(place) > SURE**2:
+        if one.value.key != "torque_constant":
+            continue
+        if one.value.widened > 1 or known.least() - known.least(place) > SURE**2:
             declared = one.value.declared
             return (scaled(declared / one.number, (declared / one.ci95[1], declared / one.ci95[0])),)
     return ()

@@ -32,6 +32,7 @@ class PreloadLoss(TransmissionEffect):
     name = "preload_loss"
     words = "loss of preload"
     headline = ("ratio", "force")
+    curve_scale = "force"
     parameters = (
         Parameter("ratio", "1", 0.01, 1.0, size=0.1),
         Parameter("force", "N", 0.0, 1e6, size=50.0),
