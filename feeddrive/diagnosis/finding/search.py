@@ -20,6 +20,7 @@ from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_map, with_curves_of
 from feeddrive.diagnosis.finding.refitting import (
     as_payload,
+    at_rest,
     balanced,
     begun_as_declared,
     refitted,
@@ -239,7 +240,7 @@ def _refitted_with(asked: _Asked, found: Fit) -> tuple[Problem, Fit] | None:
 
 def _ended(problem: Problem, found: Fit) -> tuple[Problem, Fit, list[Effect]]:
     """The set that is left at the end, all that is left counting again; and effects too small to be reported."""
-    problem, found = where_friction_brakes(*refitted(problem, fit(problem, found.effects)))
+    problem, found = where_friction_brakes(*at_rest(*refitted(problem, fit(problem, found.effects))))
     closed = with_curves_of(problem, ())  # names are weighed, and rivals tried, against all that is left
     if closed is not problem:
         problem, found = closed, fit(closed, found.effects, iterations=JOINT_ITERATIONS)
