@@ -156,8 +156,8 @@ def _reported(
     progress("looking at what is left")
     alike = ambiguous_sets(found, settled.rivals)
     compared, known = compared_recordings(searched, judged), certainty(found.problem, found.fit)
-    allowed = compared.allowed(judged)  # what is stated to differ is not left
-    rest = explain_rest(found.problem, found.fit.effects, allowed, channel_results(found.problem, allowed))
+    there, with_changes, allowed = compared.allowing(found, judged)  # what is stated to differ is not left
+    rest = explain_rest(there, with_changes, allowed, channel_results(there, allowed))
     after = with_carried(judged, *rest.effects)
     unexplained = rest.unexplained if allowed is judged else beside_changes(rest.unexplained)
     spans = all_intervals(found.problem, found.fit, known)

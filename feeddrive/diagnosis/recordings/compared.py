@@ -48,9 +48,12 @@ class Compared:
     judged: JudgedChanges | None
     listed: tuple[bool, ...]
 
-    def allowed(self, judged: Sequence[Judged]) -> Sequence[Judged]:
-        """The judged recordings with what differs in them in the plant after; as they are where nothing does."""
-        return judged if self.judged is None or not self.judged.changes.targets else self.judged.allowed
+    def allowing(self, found: Search, judged: Sequence[Judged]) -> tuple[Problem, tuple[Effect, ...], Sequence[Judged]]:
+        """Problem, effects and judged recordings with what differs in these; as they are where nothing does."""
+        own = self.judged
+        if own is None or not own.changes.targets:
+            return found.problem, tuple(found.fit.effects), judged
+        return own.problem, tuple(own.changes.fit.effects), own.allowed
 
 
 def compared_recordings(searched: Searched, judged: Sequence[Judged]) -> Compared:

@@ -38,8 +38,8 @@ FADE = 0.3
 """Time over which samples are faded in and out [s]."""
 
 LEAST_SHARE = 0.005
-"""Share of the weighted square that a mode must take, by this reading, to be simulated; beyond the band of what a
-payload leaves: what is no better there is one. The best of the grid takes 0.0015 of noise."""
+"""Share of the weighted square that a mode must take, by this reading, to be simulated; beyond the band, or without a
+resonance, of what a payload leaves: what is no better there is one. The best of the grid takes 0.0015 of noise."""
 
 
 def structural_mode(scene: Scene) -> list[list[Effect]]:
@@ -55,7 +55,8 @@ def structural_mode(scene: Scene) -> list[list[Effect]]:
     (share, mass), f, zeta = _polished(seen, float(f), zeta)
     start = StructuralMode.of(mass=max(mass, 1e-6), frequency=f, damping=zeta)
     better = share - payload > LEAST_SHARE * (1 - payload)
-    shows = better or (share > LEAST_SHARE and f < seen.edge)
+    resonates = f < seen.edge and zeta < 1  # braked critically it rings no more than a payload
+    shows = better or (share > LEAST_SHARE and resonates)
     return [[start]] if shows and is_material(start, scene.plant) else []
 
 
