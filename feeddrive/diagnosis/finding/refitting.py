@@ -25,6 +25,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between
+from feeddrive.effects.base import number
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.chain.structural_mode import StructuralMode
 
@@ -95,8 +96,9 @@ def balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
 def as_payload(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
     """A set with a payload where it has a mode, unless the mode is told from it, as surely as names are; else as it is.
 
-    A mode beyond the band, or of strong damping, is a payload of its mass. Where the table's mass is fitted within its
-    tolerance a payload is no candidate, so that the mode is there compared with none.
+    A mode that does not resonate in the band is a payload of its mass, and what its form takes beside is the model's
+    error. Where the table's mass is fitted within its tolerance a payload is no candidate, so that the mode is there
+    compared with none.
 
     Args:
         problem: recordings.
@@ -107,11 +109,13 @@ def as_payload(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
     if StructuralMode.name not in names or Payload.name in names:
         return problem, found
     place = names.index(StructuralMode.name)
-    payload = Payload.of(mass=found.effects[place].values["mass"])
+    mass, damping, frequency = (number(found.effects[place].values[key]) for key in ("mass", "damping", "frequency"))
+    resonates = damping < 1 and frequency < max(e.edge for e in problem.evidence)
+    payload = Payload.of(mass=mass)
     rest = (*found.effects[:place], *found.effects[place + 1 :])
     there, effects = said_by_effects(problem, (*rest, payload))
     other = refitted(there, fit(there, effects, iterations=JOINT_ITERATIONS))
-    told = odds_between(Standing(*other), Standing(problem, found), count) > TOLD
+    told = resonates and odds_between(Standing(*other), Standing(problem, found), count) > TOLD
     return (problem, found) if told else other
 
 
