@@ -122,5 +122,5 @@ def test_torque_of_unknown_scale_is_weighed_as_the_torque_itself() -> None:
     assert set(shared.gains) == set(known.gains)
     # the declared plant lacks what was planted, which moves the scale that it sets by less than a hundredth
     assert unit * shared.known_to("motor_torque") == pytest.approx(known.known_to("motor_torque"), rel=0.01)
-    for name, gains in known.gains.items():
-        np.testing.assert_allclose(shared.gains[name], gains, atol=0.01)
+    for name, gains in known.gains.items():  # of powers, which go with the square of the scale
+        np.testing.assert_allclose(shared.gains[name], gains, atol=0.02)

@@ -155,7 +155,9 @@ def known_motion_of(
         sample_time: of the rows [s].
     """
     expected = smoothest_motion(angle, step)
-    errors = [drawn_error(expected, step, draw) for draw in range(DRAWS)]
+    # the smoothest motion is smoother than the true one: as true ones stand those that it may be the smoothest of
+    likely = [expected - drawn_error(expected, step, draw) for draw in range(DRAWS)]
+    errors = [drawn_error(true, step, DRAWS + draw) for draw, true in enumerate(likely)]
     return expected, errors, _share_of_error(expected, errors, sample_time)
 
 
