@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.motion import encoder_error
 from feeddrive.diagnosis.motion.band import Band
-from feeddrive.diagnosis.motion.encoder_error import drawn_error
+from feeddrive.diagnosis.motion.encoder_error import drawn_error, expected_motion
 from feeddrive.diagnosis.motion.preparing import prepare
-from feeddrive.diagnosis.motion.smoothest_motion import smoothest_motion
 from feeddrive.files import find_plant
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording.files.reading import read_recording
@@ -43,7 +43,7 @@ def vibration_slope(given: FloatArray) -> float:
 
 def test_expected_motion_draws_nothing_towards_none() -> None:
     measured = np.round(motion() / STEP) * STEP
-    expected = smoothest_motion(measured, STEP)
+    expected = expected_motion(measured, STEP, 1 / RATE)
     # the steps as they are take away a fifth of a mass and more; less than half of that is left
     assert vibration_slope(measured) < 0.8
     assert vibration_slope(expected) > 0.9
@@ -51,7 +51,7 @@ def test_expected_motion_draws_nothing_towards_none() -> None:
 
 def test_error_of_the_acceleration_falls() -> None:
     measured = np.round(motion() / STEP) * STEP
-    expected = smoothest_motion(measured, STEP)
+    expected = expected_motion(measured, STEP, 1 / RATE)
     true = acceleration(motion())
     assert np.std(acceleration(expected) - true) < 0.5 * np.std(acceleration(measured) - true)
 
@@ -60,11 +60,11 @@ def test_drawn_error_is_of_the_size_of_what_is_left() -> None:
     true, left, drawn = acceleration(motion()), [], []
     for place in range(4):  # a stroke that turns on an edge of a step is told better than one between two
         at = motion() + STEP * place / 4
-        expected = smoothest_motion(np.round(at / STEP) * STEP, STEP)
+        expected = expected_motion(np.round(at / STEP) * STEP, STEP, 1 / RATE)
         left.append(np.mean((acceleration(expected) - true) ** 2))
-        drawn.append(np.mean(acceleration(drawn_error(expected, STEP, place)) ** 2))
-    # the four draws of either know their rms to a fifth; what lies below the steps is in neither
-    assert np.sqrt(np.mean(drawn)) == pytest.approx(np.sqrt(np.mean(left)), rel=0.3)
+        drawn.append(np.mean(acceleration(drawn_error(expected, STEP, 1 / RATE, place)) ** 2))
+    # what is drawn from holds an error already, so that a draw has more; the vibration lost below the steps is no part
+    assert np.sqrt(np.mean(left)) < np.sqrt(np.mean(drawn)) < 2 * np.sqrt(np.mean(left))
 
 
 def test_slow_motion_does_not_hold_the_lines_of_its_steps() -> None:
@@ -74,40 +74,30 @@ def test_slow_motion_does_not_hold_the_lines_of_its_steps() -> None:
     moving = slice(4000, -1000)
     speed = [
         np.gradient(Band(EDGE, rate).filter(one), 1 / rate)[moving]
-        for one in (angle, smoothest_motion(step * np.round(angle / step), step))
+        for one in (angle, expected_motion(step * np.round(angle / step), step, 1 / rate))
     ]
     assert np.std(speed[1]) < 0.01 * np.mean(speed[0])
     assert np.mean(speed[1]) == pytest.approx(np.mean(speed[0]), rel=1e-3)
 
 
-def test_a_drive_that_hunts_about_the_edge_of_a_step_rests() -> None:
-    """It writes jumps of a whole step, fourteen times a second, and hardly any of their acceleration is motion."""
-    hunting = 0.02 * STEP * np.sin(2 * np.pi * 7.0 * TIME) + 0.5 * STEP
-    measured = STEP * np.round(hunting / STEP)
-    assert np.ptp(measured) == pytest.approx(STEP)
-    found = smoothest_motion(measured, STEP)
-    assert np.std(acceleration(found)) < 0.01 * np.std(acceleration(measured))
+def test_steps_of_fast_motion_are_white(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At 500 steps a row, unevenly, what a draw shows beyond white steps is of that draw alone, and none is taken.
 
-
-def test_no_motion_is_beyond_the_ends_of_its_steps_and_none_is_smoother() -> None:
-    measured = STEP * np.round(motion() / STEP)
-    found = smoothest_motion(measured, STEP)
-    assert np.max(np.abs(found - measured)) <= 0.5 * STEP
-
-    def rough(angle: FloatArray) -> float:
-        return float(np.sum(np.diff(angle, 2) ** 2))
-
-    assert rough(found) < rough(motion())  # which is one that the steps allow
-    inwards = measured - found  # any way from there that stays within the ends makes it rougher
-    bump = np.exp(-(((TIME[:, None] - np.linspace(1, SECONDS - 1, 9)) / 0.05) ** 2))
-    for one in bump.T:
-        assert rough(found + 0.01 * one * inwards) > rough(found) * (1 - 1e-6)
+    Taken in every window it moves the acceleration by a seventh of its error; the turns hold a few even windows.
+    """
+    step = STEP / 4
+    angle = 40 * np.sin(2 * np.pi * 0.4 * TIME)
+    measured = np.round(angle / step) * step
+    found = acceleration(expected_motion(measured, step, 1 / RATE))
+    monkeypatch.setattr(encoder_error, "EVEN", np.inf)
+    white = acceleration(expected_motion(measured, step, 1 / RATE))
+    assert np.std(found - white) < 0.01 * np.std(white - acceleration(angle))
 
 
 def test_fine_steps_leave_the_motion_alone() -> None:
     fine = STEP / 2**12
     measured = np.round(motion() / fine) * fine
-    expected = smoothest_motion(measured, fine)
+    expected = expected_motion(measured, fine, 1 / RATE)
     assert np.max(np.abs(expected - measured)) < 5 * fine
 
 
@@ -122,5 +112,5 @@ def test_torque_of_unknown_scale_is_weighed_as_the_torque_itself() -> None:
     assert set(shared.gains) == set(known.gains)
     # the declared plant lacks what was planted, which moves the scale that it sets by less than a hundredth
     assert unit * shared.known_to("motor_torque") == pytest.approx(known.known_to("motor_torque"), rel=0.01)
-    for name, gains in known.gains.items():  # of powers, which go with the square of the scale
-        np.testing.assert_allclose(shared.gains[name], gains, atol=0.02)
+    for name, gains in known.gains.items():
+        np.testing.assert_allclose(shared.gains[name], gains, atol=0.01)

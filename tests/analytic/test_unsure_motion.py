@@ -10,9 +10,15 @@ import pytest
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.encoder_error import (
+    DRAWS,
+    _share_of_error,
+    drawn_error,
+    expected_motion,
+    known_motion_of,
+)
 from feeddrive.diagnosis.motion.preparing import weighed_by
-from feeddrive.diagnosis.motion.smoothest_motion import smoothest_motion
-from feeddrive.diagnosis.motion.unsure_motion import HALF, LEAST, unsure_motions
+from feeddrive.diagnosis.motion.unsure_motion import HALF, LEAST, unsure_motions, without_share
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.suspicion.logged import declared_hold
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
@@ -72,6 +78,19 @@ def test_a_sure_motion_has_no_parts() -> None:
     assert list(unsure_motions(burst(20.0), share, 1 / RATE, EDGE)) == []
 
 
+def test_what_is_more_error_than_motion_is_left_out() -> None:
+    angle, hertz = burst(10.0) + burst(30.0), np.fft.rfftfreq(len(TIME), 1 / RATE)
+    kept = without_share(angle, np.where(hertz > 20.0, HALF, 0.1), 1 / RATE)
+    np.testing.assert_allclose(kept, 0.9 * burst(10.0), atol=0.01e-3)
+
+
+def test_the_stroke_is_left_alone() -> None:
+    stroke = 40 * (1 - np.cos(2 * np.pi * np.clip((TIME - 2) / 4, 0, 1)))
+    share = np.where(np.fft.rfftfreq(len(TIME), 1 / RATE) > 15.0, 1.0, 0.0)
+    # begun and ended with a jump of acceleration, whose part beyond 15 Hz is a ten-thousandth of a radian
+    np.testing.assert_allclose(without_share(stroke, share, 1 / RATE), stroke, atol=5e-3)
+
+
 @pytest.fixture(scope="module")
 def problem(tmp_path_factory: pytest.TempPathFactory) -> Problem:
     plant_file, fitted, judged = case(COARSE).write(tmp_path_factory.mktemp("coarse"))
@@ -86,11 +105,6 @@ def test_a_plant_that_filters_the_motion_gains_nothing(problem: Problem) -> None
     rows, sample_time = evidence.thinned(evidence.fit_rows), evidence.recording.sample_time
     hertz = np.fft.rfftfreq(len(rows), sample_time)
 
-    def lost(angle: FloatArray, share: FloatArray) -> FloatArray:
-        acceleration = np.concatenate([[0.0], np.diff(angle, 2), [0.0]])
-        less = np.fft.irfft(np.fft.rfft(acceleration) * share, len(angle))
-        return np.cumsum(np.cumsum(less))
-
     def error(motion: MotorMotion) -> float:
         led = replace(evidence, motion=replace(motion, time=evidence.motion.time))
         predicted = evidence.weighted(problem.predictor.predict(problem.plant, led), rows)
@@ -98,7 +112,7 @@ def test_a_plant_that_filters_the_motion_gains_nothing(problem: Problem) -> None
 
     angle, whole = evidence.motion.angle[evidence.motion.samples], error(evidence.motion)
     for corner in (20.0, 25.0, 30.0, 36.0, 45.0):
-        slow = angle - lost(angle, np.minimum(HALF * (hertz / corner) ** 4, 1.0))
+        slow = without_share(angle, np.minimum(HALF * (hertz / corner) ** 4, 1.0), sample_time)
         less = error(motor_motion(np.arange(len(angle)) * sample_time, slow))
         # ten is what three values cost; with the steps' error in the motion it is a thousand
         assert 0.5 * (whole - less) < 10.0 * whole / (2 * rows.sum()), corner
@@ -139,5 +153,26 @@ def test_strokes_at_constant_speed_are_told_by_a_fine_encoder() -> None:
     strokes = 30.0 * np.abs((np.arange(rows) / RATE / 0.9) % 2 - 1)  # of 30 rad in 0.9 s, cut out of a long run
     turning = np.hanning(123)[1:-1]
     angle = np.convolve(np.pad(strokes, 60, mode="edge"), turning / np.sum(turning), mode="valid")
-    left = smoothest_motion(step * np.round(angle / step), step) - angle
+    expected = expected_motion(step * np.round(angle / step), step, 1 / RATE)
+    errors = [drawn_error(expected, step, 1 / RATE, draw) for draw in range(DRAWS)]
+    share = _share_of_error(expected, errors, 1 / RATE)
+    left = without_share(expected, share, 1 / RATE) - angle
     assert np.max(np.abs(left[250:-250])) < step  # half a second at either end is not compared
+
+
+def test_a_vibration_that_comes_once_is_told_where_it_comes() -> None:
+    """Strokes all along, and a burst of 60 Hz at the end: of the whole recording the steps make most at 60 Hz."""
+    step, time = 2 * np.pi / 2**12, np.arange(20 * int(RATE)) / RATE
+    strokes = 15.0 * (1 - np.cos(2 * np.pi * 0.4 * time))
+    shaken = 1.5 * step * np.sin(2 * np.pi * 60.0 * time) * ((time > 17.5) & (time < 18.5))
+    angle = strokes + shaken
+    known, told = known_motion_of(step * np.round(angle / step), step, 1 / RATE)
+    hertz, over = np.fft.rfftfreq(len(time), 1 / RATE), np.fft.rfft(known - strokes)
+    beyond = np.fft.irfft(np.where((hertz > 50) & (hertz < 70), over, 0), len(time))
+    inside, before = (time > 17.6) & (time < 18.4), (time > 2) & (time < 17)
+    # what is left of it is the steps' own error in 20 of 250 Hz, step / sqrt(12) * sqrt(20 / 250), and the expected
+    # motion's taking away of as much again
+    allowed = 2 * step / np.sqrt(12) * np.sqrt(20 / 250)
+    assert np.sqrt(np.mean((beyond - shaken)[inside] ** 2)) < allowed < 0.2 * np.sqrt(np.mean(shaken[inside] ** 2))
+    assert np.sqrt(np.mean(beyond[before] ** 2)) < 0.5 * allowed  # and none of the error elsewhere comes with it
+    assert np.max(np.interp([55.0, 60.0, 65.0], hertz, told.share)) > 0.1

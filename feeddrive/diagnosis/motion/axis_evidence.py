@@ -12,8 +12,7 @@ import numpy as np
 from feeddrive.diagnosis.calibration.calibration import Whitener, whitener
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.motion.band import Band
-from feeddrive.diagnosis.motion.encoder_error import EncoderError
-from feeddrive.diagnosis.motion.smoothest_motion import smoothest_motion
+from feeddrive.diagnosis.motion.encoder_error import EncoderError, known_motion_of
 from feeddrive.diagnosis.motion.weighing import Weighing
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
@@ -212,7 +211,7 @@ class AxisEvidence(Evidence):
         """The evidence as it is where the same rows have other times: what changes is the motion between them."""
         angle = recording["motor_angle"]
         if self.gains:
-            angle = smoothest_motion(angle, quantisation_step(angle))
+            angle = known_motion_of(angle, quantisation_step(angle), recording.sample_time)[0]
             angle = angle if self.told is None else angle + self.told
         motion = motor_motion(from_zero(recording), angle).timed(clock(recording))
         return replace(self, recording=recording, motion=motion)

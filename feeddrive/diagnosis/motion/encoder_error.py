@@ -3,30 +3,45 @@
 The motor angle is measured in steps, θ_m = θ + q. Differentiated by the plant, q comes out as torque and position that
 nothing of the machine asked for, and an effect that only makes the plant answer the motor less (a mass that is taken
 away, a soft spring, a resonance of strong damping) lowers the error by that alone. What is simulated is therefore the
-motion A that is expected given what was measured: the smoothest that the encoder would have written down so
-(`smoothest_motion`). What it holds is motion, and what it lacks the encoder does not tell: its error is nearly
-independent of it. Of errors that the same encoder would make and that are drawn, the share ρ(f) of the power of that
-motion follows; of what is uncertain, every comparison is without (`unsure_motion`). The error that is left draws values
-little towards none (Carroll et al., Measurement Error in Nonlinear Models (2006), chapter 4); what it does draw them by
-is `Calibration`'s to widen (`encoder_scores`). It adds to the residual what the declared plant makes of it: errors are
-drawn anew and simulated, and each channel is weighed, frequency by frequency, by the sensor's noise over both, and by
-how small an error of the motion it is,
+motion that is expected given what was measured, window by window and frequency by frequency (Wiener, Extrapolation,
+Interpolation, and Smoothing (1949)):
+
+    E[A | A_m] = max(1 - N / P, 0) A_m where there is motion, else 0,   N = step²/12 Σw² |2 sin(ω h / 2)|⁴
+
+| symbol | meaning |
+|---|---|
+| A_m | spectrum of the second difference of the angle in a window |
+| P | mean square of A_m over neighbouring windows; neighbouring frequencies tell besides where there is motion at all |
+| N | that of the steps' error, white, of variance step²/12 |
+| w, h | window, sample time |
+
+P is of one frequency, as the spectrum of a stroke falls fifty times from one to the next, and what is taken away is
+then N in the mean however steep it is (Stein, Ann. Statist. 9 (1981) 1135). Of errors that the same encoder would make
+and that are drawn, the share ρ(f) of the power of that motion follows; so much is left out of it, and of what is
+uncertain still, every comparison is without (`unsure_motion`). Motion need not last: of a chirp in one part of a
+recording ρ(f) says how much of the whole is error, and left out is only what is error in its own window (`Told`). The
+error that is left is nearly independent of the motion that is simulated, so that it draws values little towards none
+(Carroll et al., Measurement Error in Nonlinear Models (2006), chapter 4); what it does draw them by is `Calibration`'s
+to widen (`encoder_scores`). It adds to the residual what the declared plant makes of it: errors are drawn anew and
+simulated, and each channel is weighed, frequency by frequency, by the sensor's noise over both, and by how small an
+error of the motion it is,
 
     gain(f) = 1 / √(1 + S_encoder(f) / S_sensor(f)) / (1 + (ρ(f) / `SMALL`)²)
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import uniform_filter
 from scipy.signal.windows import hann
 
 from feeddrive.diagnosis.motion.band import END_CUT, Band
-from feeddrive.diagnosis.motion.smoothest_motion import smoothest_motion
 from feeddrive.diagnosis.motion.told_motion import teller
-from feeddrive.diagnosis.motion.unsure_motion import unsure_motions
+from feeddrive.diagnosis.motion.unsure_motion import left_out, unsure_motions, without_share
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of
 from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.plant.analysis.modes import braked_modes
@@ -34,10 +49,26 @@ from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.flaws import quantisation_step
 from feeddrive.simulate.driven import LoadMotion, MotorMotion, motor_motion, motor_motions, simulate_driven
-from feeddrive.typing import FloatArray
+from feeddrive.typing import BoolArray, ComplexArray, FloatArray
 
 WINDOW = 0.128
-"""Time [s] of which a recording needs four for a spectrum: motion keeps its own so long."""
+"""Length of a window [s]: motion keeps its spectrum that long, and 8 Hz are distinguished from the next."""
+
+ALONG_FREQUENCY, ALONG_TIME = 5, 3
+"""Neighbours that tell where there is motion: 15 values, of which those of overlapping windows are half independent,
+are within a third of the mean square of noise."""
+
+SHOWN = 1 + 2 / math.sqrt(10)
+"""P over N from which there is motion: two standard deviations of the mean of ten independent squares of noise."""
+
+EVEN = math.log(1000)
+"""Square of the mean phasor between rows, over that of phases at random, from which steps make lines: that square is
+exponential, and one window in a thousand reaches so much by chance. An angle that passes many steps a row, unevenly,
+makes white ones (Widrow & Kollár, Quantization Noise (2008)), in which peaks of a draw are of that draw alone."""
+
+SURE_MOTION = 8.0
+"""Frequency [Hz] below which the angle is motion: an axis moves many steps within a window."""
+
 
 MATERIAL = 0.1
 """Power that the encoder adds to a channel at any frequency of the band, over its sensor's, from which it is carried:
@@ -78,6 +109,31 @@ class EncoderError:
     told: FloatArray
 
 
+@dataclass(frozen=True)
+class Told:
+    """What of an expected motion is motion.
+
+    Attributes:
+        share: ρ of the whole recording, (n // 2 + 1,).
+        there: how much of what that leaves out is error in a window, at its frequencies, 0 to 1, (windows, m).
+        sample_time: of the rows [s].
+    """
+
+    share: FloatArray
+    there: FloatArray
+    sample_time: float
+
+    def known(self, angle: FloatArray) -> FloatArray:
+        """A motion without what is more error than motion where it stands, (n,)."""
+        return angle - self.uncertain(angle - without_share(angle, self.share, self.sample_time))
+
+    def uncertain(self, part: FloatArray) -> FloatArray:
+        """Of a part of a motion that may be error, (n,), what is error in its own window."""
+        window = _window(self.sample_time)
+        spectra = np.fft.rfft(_frames(part, len(window)) * window, axis=1)
+        return _added(self.there * spectra, window, len(part))
+
+
 def encoder_error(
     plant: Plant, recording: Recording, band: Band, noise: dict[str, float], proportional: bool = False,
     acting: FloatArray | None = None,
@@ -99,7 +155,9 @@ def encoder_error(
     if step <= 0 or round(WINDOW / sample_time) < 16 or len(angle) < 4 * round(WINDOW / sample_time):
         return None
     time: FloatArray = np.arange(len(angle), dtype=np.float64) * sample_time
-    expected, errors, share = known_motion_of(angle, step, sample_time)
+    expected, known = known_motion_of(angle, step, sample_time)
+    share = known.share
+    errors = [drawn_error(expected, step, sample_time, draw, known) for draw in range(DRAWS)]
     told: FloatArray = np.zeros(len(angle))
     try:
         if acting is not None and not proportional and np.all(np.isfinite(acting)):
@@ -134,7 +192,7 @@ def encoder_error(
     held = braked_modes(plant, plant.middle).poles
     for part in unsure_motions(expected, share, sample_time, band.edge, [p for p in held if p.imag > 0]):
         try:
-            run = simulate_driven(plant, motor_motion(time, expected + told + part))
+            run = simulate_driven(plant, motor_motion(time, expected + told + known.uncertain(part)))
         except SimulationError:
             continue
         for name, columns in unsure.items():
@@ -144,21 +202,43 @@ def encoder_error(
     )
 
 
-def known_motion_of(
-    angle: FloatArray, step: float, sample_time: float
-) -> tuple[FloatArray, list[FloatArray], FloatArray]:
-    """The motion that is expected, (n,), errors that are drawn of it, (n,) each, and the share of them in its power.
+def known_motion_of(angle: FloatArray, step: float, sample_time: float) -> tuple[FloatArray, Told]:
+    """The motion that is expected, without what is more error than motion, (n,), and how much of it is told.
 
     Args:
         angle: as the encoder gives it, (n,).
         step: of the encoder.
         sample_time: of the rows [s].
     """
-    expected = smoothest_motion(angle, step)
-    # the smoothest motion is smoother than the true one: as true ones stand those that it may be the smoothest of
-    likely = [expected - drawn_error(expected, step, draw) for draw in range(DRAWS)]
-    errors = [drawn_error(true, step, DRAWS + draw) for draw, true in enumerate(likely)]
-    return expected, errors, _share_of_error(expected, errors, sample_time)
+    expected = expected_motion(angle, step, sample_time)
+    errors = [drawn_error(expected, step, sample_time, draw) for draw in range(DRAWS)]
+    share = _share_of_error(expected, errors, sample_time)
+    known = Told(share, _error_in_windows(expected, errors, share, sample_time), sample_time)
+    return known.known(expected), known
+
+
+def _error_in_windows(
+    expected: FloatArray, errors: Sequence[FloatArray], share: FloatArray, sample_time: float
+) -> FloatArray:
+    """`Told.there`: what ρ of a window and its neighbours leaves out over what ρ of the recording does, at most 1.
+
+    Below two periods a window it is 1: a window does not tell one frequency from the next.
+    """
+    window = _window(sample_time)
+    power = uniform_filter(np.abs(_spectra(expected, window)) ** 2, (ALONG_TIME, ALONG_FREQUENCY))
+    squares = np.mean([np.abs(_spectra(error, window)) ** 2 for error in errors], axis=0)
+    wrong = uniform_filter(squares, (ALONG_TIME, ALONG_FREQUENCY))
+    local = np.minimum(np.divide(wrong, power, out=np.ones_like(power), where=power > 0), 1.0)
+    frequency = np.fft.rfftfreq(len(window), sample_time)
+    of_all = left_out(np.interp(frequency, np.fft.rfftfreq(len(expected), sample_time), share))
+    there: FloatArray = np.minimum(left_out(local) / np.where(of_all > 0, of_all, np.inf), 1.0)
+    there[:, frequency < 2 / WINDOW] = 1.0
+    return there
+
+
+def _window(sample_time: float) -> FloatArray:
+    """Of the spectra: squares of windows that overlap by half add up to one."""
+    return np.asarray(np.sqrt(hann(2 * round(0.5 * WINDOW / sample_time), sym=False)))
 
 
 def _answer(run: LoadMotion, name: str) -> FloatArray:
@@ -202,12 +282,86 @@ def _density(series: Sequence[FloatArray], sample_time: float) -> tuple[FloatArr
     return frequency, density
 
 
-def drawn_error(expected: FloatArray, step: float, draw: int) -> FloatArray:
+def drawn_error(
+    expected: FloatArray, step: float, sample_time: float, draw: int, known: Told | None = None
+) -> FloatArray:
     """The error that the expected motion would have if it were the true one, measured by the same encoder, (n,) [rad].
 
     Slow motion and rest make an error that is slow: it is drawn by measuring, not as white noise. Draws differ in where
-    the steps lie: `draw` is the seed of that.
+    the steps lie: `draw` is the seed of that. Where a share of the motion is left out (`Told`), it is of both.
     """
     true = expected + step * np.random.default_rng(draw).uniform()
     measured = step * np.round(true / step)
-    return smoothest_motion(measured, step) - true
+    seen = expected_motion(measured, step, sample_time)
+    return (seen if known is None else known.known(seen)) - true
+
+
+def expected_motion(angle: FloatArray, step: float, sample_time: float) -> FloatArray:
+    """The motor angle that is expected given one measured in steps.
+
+    Args:
+        angle: as measured [rad], shape (n,).
+        step: of the encoder [rad].
+        sample_time: [s].
+
+    Returns:
+        Angle [rad], shape (n,).
+    """
+    window = _window(sample_time)
+    length = len(window)
+    omega = 2 * np.pi * np.arange(length // 2 + 1) / length
+    difference = (2 * np.sin(0.5 * omega)) ** 2
+    spectra = _spectra(angle, window)
+    white = step**2 / 12 * float(window @ window) * difference**2
+
+    def without(noise: FloatArray) -> FloatArray:
+        over_noise = np.abs(spectra) ** 2 / np.where(noise > 0, noise, 1.0)
+        moving = uniform_filter(over_noise, (ALONG_TIME, ALONG_FREQUENCY)) > SHOWN
+        error = np.where(moving, 1 / np.maximum(uniform_filter(over_noise, (ALONG_TIME, 1)), 1.0), 1.0)
+        error[:, omega < 2 * math.pi * SURE_MOTION * sample_time] = 0.0
+        # minus the second difference, summed twice, is the angle
+        return angle - _added(-error * spectra / np.where(difference > 0, difference, 1.0), window, len(angle))
+
+    first = without(white)
+    made = np.mean([np.abs(_spectra(_steps_of(first, step, draw), window)) ** 2 for draw in range(DRAWS)], axis=0)
+    made = uniform_filter(made, (ALONG_TIME, 1))
+    lines = (made > SHOWN * white) & _keeps_step(first / step, window**2)[:, None]
+    return without(np.where(lines, made, white))
+
+
+def _keeps_step(places: FloatArray, weights: FloatArray) -> BoolArray:
+    """In which windows an angle, (n,) [steps], passes the steps evenly from row to row, (windows,)."""
+    turns = np.exp(2j * np.pi * np.diff(places, prepend=places[:1]))
+    coherence = np.abs(_frames(turns, len(weights)) @ weights) ** 2
+    return np.asarray(coherence > EVEN * float(weights @ weights))
+
+
+def _steps_of(angle: FloatArray, step: float, draw: int) -> FloatArray:
+    """What an encoder adds to an angle, (n,): `draw` is the seed of where its steps lie."""
+    at = angle + step * np.random.default_rng(draw).uniform()
+    return np.asarray(step * np.round(at / step) - at)
+
+
+def _spectra(angle: FloatArray, window: FloatArray) -> ComplexArray:
+    """Spectra of the second difference of an angle in windows that overlap by half, (windows, frequencies)."""
+    frames = _frames(np.concatenate([[0.0], np.diff(angle, 2), [0.0]]), len(window))
+    return np.asarray(np.fft.rfft(frames * window, axis=1))
+
+
+def _frames(series: FloatArray, length: int) -> FloatArray:
+    """Windows of a series that overlap by half, (count, length)."""
+    half = length // 2
+    padded = np.concatenate([np.zeros(half), series, np.zeros(length + (-len(series)) % half)])
+    frames: FloatArray = np.lib.stride_tricks.sliding_window_view(padded, length)[::half]
+    return frames
+
+
+def _added(spectra: ComplexArray, window: FloatArray, count: int) -> FloatArray:
+    """The series of so many samples that overlapping windows with these spectra add up to."""
+    length = len(window)
+    half = length // 2
+    parts = np.fft.irfft(spectra, length, axis=1) * window
+    total = np.zeros((len(parts) + 1) * half)
+    for i, part in enumerate(parts):
+        total[i * half : i * half + length] += part
+    return total[half : half + count]

@@ -3,7 +3,7 @@
 The motion A that is expected (`encoder_error`) holds some of the steps' error still. What moved, frequency by
 frequency, is not A in the mean but
 
-    E[A_true | A] = (1 - κ(f) ρ(f)) A,   ρ = min(S_error / S_A, 1),   κ ~ N(0, 1) + i N(0, 1)
+    E[A_true | A] = (1 - κ(f) ρ(f)) A,   ρ = min(S_error / S_A, 1),   κ ~ N(1, 1) + i N(0, 1)
 
 | symbol | meaning | unit |
 |---|---|---|
@@ -19,9 +19,9 @@ encoder are the same there. At a pole of the load with the motor held the motor 
 sensitivity goes to one and back: over the width 1 / |L| of the frequency, which is nobody's to know, the pole's own at
 least. Nodes stand at the pole, its half width away and twice as far each time until they are as far apart as all are.
 
-A is simulated, whose error is nearly independent of it, and what the declared plant makes of ρ A around every node is
-a column that each comparison is without, as far as a deviation of one goes, at once and a quarter of a period later.
-Neither names nor declared values are told by it.
+So (1 - ρ) A is simulated, and what the declared plant makes of ρ A around every node is a column that each comparison
+is without, as far as a deviation of one goes, at once and a quarter of a period later. Neither names nor declared
+values are told by it.
 """
 
 from __future__ import annotations
@@ -39,7 +39,8 @@ SPACING = 2 ** (1 / 3)
 a radian over half an octave; what is straight over a third of one follows that."""
 
 HALF = 0.5
-"""Share ρ from which an encoder tells less of a motion than it misses: the torque is asked for the rest."""
+"""Share ρ from which a motion is left out: less is missed without it than with it. Left in, it would shake the load,
+and friction that turns with it is none in the mean."""
 
 LEAST = 1e-3
 """Share ρ from which a frequency has a node: what is less, a recording of some thousand independent values does not
@@ -84,6 +85,25 @@ def unsure_motions(
             continue
         for phase in (1.0, 1j):
             yield irfft(spectrum * part * phase)[: len(angle)]
+
+
+def without_share(angle: FloatArray, share: FloatArray, sample_time: float) -> FloatArray:
+    """A motion without what is not told of it: (1 - ρ) of it where the error is less than the rest, none elsewhere.
+
+    Args:
+        angle: expected motion of the motor [rad], (n,), at rest at its ends.
+        share: ρ at the frequencies of n samples, (n // 2 + 1,).
+        sample_time: [s].
+    """
+    frequency, spectrum = _turned(angle, sample_time)
+    shares = np.interp(frequency, np.fft.rfftfreq(len(angle), sample_time), share)
+    lost: FloatArray = irfft(spectrum * left_out(shares))[: len(angle)]
+    return angle - lost
+
+
+def left_out(share: FloatArray) -> FloatArray:
+    """How much of a motion is left out of which a share ρ is error."""
+    return np.where(share < HALF, share, 1.0)
 
 
 def _turned(angle: FloatArray, sample_time: float) -> tuple[FloatArray, ComplexArray]:
