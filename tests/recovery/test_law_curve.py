@@ -102,7 +102,6 @@ def test_a_curve_has_nothing_of_the_law_itself() -> None:
     own = problem.residual(()) - problem.residual(law.effects)
     for part in parts:
         series = evidence.weighted(part, evidence.thinned(rows))
-        # of the squares by which a name is judged it shares less than the half percent that one is asked for
-        assert (series @ own) ** 2 < 0.005 * (series @ series) * (own @ own)
+        assert abs(series @ own) < 0.02 * np.linalg.norm(series) * np.linalg.norm(own)
     assert law_curves(problem, [EFFECTS["drive_delay"].of(delay=1e-4)], 0) == {}
     assert replace(evidence).curves == {}

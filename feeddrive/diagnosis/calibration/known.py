@@ -73,9 +73,8 @@ class Known:
         low = [self.u(i, math.log(_least_share(one.tolerance)) / one.deviation) for i, one in enumerate(self.values)]
         ends = np.array([low, self.ends[1]])
         free = np.array([one.widened > 1 for one in self.values])
-        beyond = (
-            free | (self.at < ends[0]) | (self.at > ends[1])
-        )  # a value that is not held by its tolerance holds no other
+        # a value that is not held by its tolerance holds no other
+        beyond = free | (self.at < ends[0]) | (self.at > ends[1])
         return np.where(beyond, [[-np.inf], [np.inf]], ends)
 
     def u(self, place: int, coordinate: float) -> float:

@@ -237,7 +237,7 @@ def _error_in_windows(
 
 
 def _window(sample_time: float) -> FloatArray:
-    """Of the spectra: squares of windows that overlap by half add up to one."""
+    """Window of the spectra: squares of windows that overlap by half add up to one, (m,)."""
     return np.asarray(np.sqrt(hann(2 * round(0.5 * WINDOW / sample_time), sym=False)))
 
 
