@@ -16,6 +16,7 @@ from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.diagnosis.motion.prediction import AxisPredictor
 from feeddrive.diagnosis.motion.preparing import prepare
+from feeddrive.diagnosis.motion.row_steps import in_longest_steps
 from feeddrive.diagnosis.motion.slow_rows import is_slow
 from feeddrive.diagnosis.suspicion.torque_channel import refuse_what_is_no_torque
 from feeddrive.errors import InputError
@@ -112,7 +113,9 @@ def _scaled(plant: Plant, fitted: tuple[AxisEvidence, ...], judged: list[Evidenc
             if isinstance(evidence, AxisEvidence) and evidence.scaled_from and any(map(_has_torque, fitted)):
                 what = f"only {evidence.scaled_from}, and what is fitted has a torque"
                 raise InputError(what, evidence.recording.name, "declare torque_constant in [motor] of the plant")
-        return Problem(plant, fitted, AxisPredictor()), judged, ()
+        predictor = AxisPredictor()
+        fitted, judged = _in_steps(plant, predictor, fitted, judged)
+        return Problem(plant, fitted, predictor), judged, ()
     predictor = AxisPredictor(unknown)
     scale = 1 / predictor.scale(plant)
     for one in unknown:
@@ -122,7 +125,20 @@ def _scaled(plant: Plant, fitted: tuple[AxisEvidence, ...], judged: list[Evidenc
     others = [_known(one, known, scale) for one in judged]
     inside = tuple(known[one] for one in fitted)
     predictor = AxisPredictor(tuple(one for one in inside if one.scaled_from), scale)
+    inside, others = _in_steps(plant, predictor, inside, others)
     return Problem(plant, inside, predictor), others, ()
+
+
+def _in_steps(
+    plant: Plant, predictor: AxisPredictor, fitted: Sequence[AxisEvidence], judged: Sequence[Evidence]
+) -> tuple[tuple[AxisEvidence, ...], list[Evidence]]:
+    """Recordings in the longest steps of the driven simulation; one that is fitted and judged stays one."""
+    ready = {one: in_longest_steps(one, plant, predictor) for one in fitted}
+    for one in judged:
+        if isinstance(one, AxisEvidence) and one not in ready:
+            ready[one] = in_longest_steps(one, plant, predictor)
+    others = [ready[one] if isinstance(one, AxisEvidence) else one for one in judged]
+    return tuple(ready[one] for one in fitted), others
 
 
 def _has_torque(evidence: AxisEvidence) -> bool:

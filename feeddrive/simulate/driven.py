@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
 from scipy.interpolate import make_interp_spline
-from scipy.signal import firwin
 
 from feeddrive.effects.base import TransmissionEffect
 from feeddrive.engine.engine import Feed, rested, run_machine
@@ -25,6 +25,7 @@ from feeddrive.plant.analysis.rated_life import preload_of
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.structure import parameter_values
 from feeddrive.simulate.driven_machine import driven_machine
+from feeddrive.simulate.row_steps import at_rate, at_rows, at_steps, on_grid, step_count
 from feeddrive.typing import FloatArray, IntegerArray
 
 TOLERANCE = 1e-10
@@ -37,10 +38,6 @@ kept of it."""
 GRID = 0.5e-3
 """Time between the steps of a motion at most [s]: what friction does in a reversal comes to the motor by the torsion
 of the screw, which lets little through beyond 1 kHz."""
-
-TAPS, KAISER = 4, 7.86
-"""Samples on either side over which a torque is averaged, and the window's shape: flat to 3e-4 up to a tenth of the
-sample rate, and 1e-4 of what comes back to there from nine tenths and beyond (Kaiser, 80 dB)."""
 
 TORQUE = 4
 """Place of the motor torque among what is shown."""
@@ -64,6 +61,10 @@ class FlankRests:
     samples: IntegerArray
     sides: FloatArray
 
+    def at_steps(self, every: int) -> FlankRests:
+        """The first steps of so many rows that the rests have begun at."""
+        return FlankRests(-(-self.samples // every), self.sides)
+
 
 @dataclass(frozen=True, eq=False)
 class MotorMotion:
@@ -74,6 +75,7 @@ class MotorMotion:
         angle, speed: on the grid [rad, rad/s].
         acceleration: on the grid [rad/s^2], shape (m,).
         substeps: grid steps per sample.
+        every: samples that one step of a simulation takes, of a grid without substeps.
     """
 
     time: FloatArray
@@ -81,6 +83,7 @@ class MotorMotion:
     speed: FloatArray
     acceleration: FloatArray
     substeps: int
+    every: int = 1
 
     @property
     def samples(self) -> slice:
@@ -90,6 +93,16 @@ class MotorMotion:
     def timed(self, time: FloatArray) -> MotorMotion:
         """The motion with its samples at other times [s], (n,)."""
         return replace(self, time=on_grid(time, self.substeps))
+
+    @cached_property
+    def steps(self) -> MotorMotion:
+        """The motion that a simulation follows, a sample at each of its steps."""
+        if self.every == 1:
+            return self
+        last = self.time[-1] + self.every * (self.time[1] - self.time[0])
+        time = np.append(self.time[:: self.every], last)[: step_count(len(self.time), self.every)]
+        speed, acceleration = (at_steps(one, self.every, is_rate=True) for one in (self.speed, self.acceleration))
+        return MotorMotion(time, at_steps(self.angle, self.every), speed, acceleration, self.substeps)
 
 
 @dataclass(frozen=True)
@@ -123,6 +136,30 @@ class LoadMotion:
         own = (self.screw_angle, self.screw_speed, self.table_position, self.table_velocity, self.torque, self.force)
         return sum(series.nbytes for series in own)
 
+    def torque_at(self, motion: MotorMotion) -> FloatArray:
+        """Torque at the samples of the motion whose steps this is at, (n,)."""
+        return self.torque if motion.every == 1 else at_rows(self.torque, motion.every, len(motion.angle))
+
+    def table_at(self, motion: MotorMotion, radius: float) -> FloatArray:
+        """Table position at the samples of that motion, (n,), by what it is beyond `radius` [m/rad] times the angle."""
+        if motion.every == 1:
+            return self.table_position
+        beyond = at_rows(self.table_position - radius * self.motor_angle, motion.every, len(motion.angle))
+        position: FloatArray = radius * motion.angle + beyond
+        return position
+
+    def at(self, motion: MotorMotion, radius: float) -> LoadMotion:
+        """All of it at the samples of that motion."""
+        if motion.every == 1:
+            return self
+        phi, rate, velocity, force = (
+            at_rows(one, motion.every, len(motion.angle))
+            for one in (self.screw_angle, self.screw_speed, self.table_velocity, self.force)
+        )
+        position, torque = self.table_at(motion, radius), self.torque_at(motion)
+        given = motion.time, motion.angle, motion.speed
+        return LoadMotion(*given, phi, rate, position, velocity, torque, force, self.report)
+
 
 def motor_motion(time: FloatArray, angle: FloatArray, substeps: int | None = None) -> MotorMotion:
     """Speed and acceleration of an angle [rad] at even times [s], (n,), by a quintic spline through the samples.
@@ -153,6 +190,21 @@ def simulate_driven(
     has shifted goes on bouncing where the machine rests (multiple shooting: Bock and Plitt, IFAC Proceedings 17 (1984)
     1603). Raises SimulationError for a motion that cannot be followed; it says when, and which effect to look at.
     """
+    return simulate_steps(plant, motion, tolerance, rests).at(motion, plant.chain.motor_radius)
+
+
+def simulate_steps(
+    plant: Plant, motion: MotorMotion, tolerance: float = TOLERANCE, rests: FlankRests | None = None
+) -> LoadMotion:
+    """`simulate_driven` at the steps of the motion alone.
+
+    A step of k rows may be wrong by a k-th: slopes are differences of runs, and show where the engine changes its
+    steps. Those of rows are hardly ever halved; where a spring bends, longer ones with the tolerance of rows made some
+    slopes several times as uncertain.
+    """
+    if motion.every > 1:
+        rests = rests and rests.at_steps(motion.every)
+        return simulate_steps(plant, motion.steps, tolerance / motion.every, rests)
     machine, outputs, beginning, riding = driven_machine(plant)
     values = np.array(parameter_values(plant))
     states = np.zeros(0)
@@ -229,26 +281,6 @@ def _on_flank(
         if np.max(np.abs(moved)) <= TOLERANCE:
             return Position(memory, place.own, place.level)
     return place
-
-
-def on_grid(series: FloatArray, substeps: int) -> FloatArray:
-    """Samples, (n,), and straight between them, on a grid; (m,)."""
-    at = np.arange((len(series) - 1) * substeps + 1) / substeps
-    return np.interp(at, np.arange(len(series)), series) if substeps > 1 else series
-
-
-def at_rate(series: FloatArray, substeps: int) -> FloatArray:
-    """A series on a grid of `substeps` a sample, (m,), as samples show it, (n,): without what folds back as slow.
-
-    A drive holds its torque from row to row, and the rows of the motor's angle hold what a jump of friction between
-    them did only as far as it moved the motor, that is hardly beyond their own rate. The torque that the plant asks for
-    is taken as far, by a zero-phase filter; read at the rows alone, a jump would be early or late by half a row.
-    """
-    if substeps == 1:
-        return series
-    taps = firwin(2 * TAPS * substeps + 1, 1 / substeps, window=("kaiser", KAISER))
-    filtered: FloatArray = np.convolve(np.pad(series, TAPS * substeps, mode="edge"), taps, mode="valid")
-    return filtered[::substeps].copy()
 
 
 def _fed(motion: MotorMotion, sample: int, count: int) -> FloatArray:

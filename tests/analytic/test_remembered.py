@@ -6,6 +6,7 @@ import gc
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from feeddrive.diagnosis.finding.remembered import LEAST, Remembered
 from feeddrive.diagnosis.heat.heat_evidence import prepare_heat
@@ -13,9 +14,11 @@ from feeddrive.diagnosis.heat.heat_prediction import heat_predictor
 from feeddrive.diagnosis.motion.prediction import AxisPredictor
 from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.diagnosis.recordings.recordings import RecordingPredictor
+from feeddrive.effects.chain.inertia_deviation import InertiaDeviation
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording
+from feeddrive.simulate.driven import simulate_driven
 from feeddrive.typing import FloatArray
 
 
@@ -120,3 +123,17 @@ def test_motions_kept_are_bounded_by_their_bytes() -> None:
         chain = replace(plant.chain, values={**plant.chain.values, "table_mass": 30.0 + change})
         predictor.load_motion(replace(plant, mechanics=chain), evidence)
     assert predictor._runs.size == 7 * one
+
+
+@pytest.mark.parametrize("name", ["bench_axis", "kimm_testbed", "vertical_axis"])
+def test_the_load_moves_once_for_every_inertia_of_the_motor(name: str) -> None:
+    """Given the motor's motion its inertia takes a torque in proportion, and nothing else notices it."""
+    plant = read_plant(plants_folder() / f"{name}.toml")
+    evidence, predictor = prepare(axis_recording(3.0), plant, 1.0), AxisPredictor()
+    for inertia in (0.0, 3e-4):
+        other = plant.with_effects(InertiaDeviation.of(None, "motor", inertia=inertia))
+        found = predictor.load_motion(other, evidence)
+        simulated = simulate_driven(other, evidence.motion)
+        np.testing.assert_allclose(found.torque, simulated.torque, rtol=0, atol=1e-12 * np.ptp(simulated.torque))
+        np.testing.assert_array_equal(found.table_position, simulated.table_position)
+    assert predictor._runs.size == found.size  # one simulation

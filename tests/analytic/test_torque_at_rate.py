@@ -8,7 +8,8 @@ import pytest
 from feeddrive.diagnosis.motion.band import Band
 from feeddrive.effects.friction.guide_friction import GuideFriction
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.driven import GRID, at_rate, motor_motion, on_grid, simulate_driven
+from feeddrive.simulate.driven import GRID, motor_motion, simulate_driven
+from feeddrive.simulate.row_steps import at_rate, on_grid
 from tests.convergence.test_simulate import BENCH
 
 FAST, EVERY, EDGE = 0.25e-3, 8, 50.0

@@ -21,6 +21,9 @@ from feeddrive.recording.long.joined import clock
 from feeddrive.simulate.driven import FlankRests, MotorMotion, motor_motion
 from feeddrive.typing import BoolArray, FloatArray
 
+Channels = tuple[dict[str, FloatArray], ...]
+"""Series of channels, several times."""
+
 
 @dataclass(frozen=True, eq=False)
 class AxisEvidence(Evidence):
@@ -39,12 +42,15 @@ class AxisEvidence(Evidence):
         told: part of the motion that the torque tells and the encoder does not, (n,) [rad]; None for none.
         lead_map: what a lead map may be of the table position, in the band, (n, k); None without a table position.
         law_curves: as `curves`.
-        unsure: channel to what motion that may not be makes of it, in the band, (n, k); as `gains`.
+        unsure: of every part of the motion that may not be, channel to what that makes of it, in the band, (n,); as
+            `gains`.
         acting: torque as it acts at the rows, of all frequencies, (n,) [N m]; None where it is not known.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
         rests: where the load is seen to ride on a flank; None where it is not.
         bouncing: samples at which it has left a flank and not come to rest again, (n,); None as `rests`.
+        evened_unsure: `unsure` as `evened`, by every how many samples and from which to which: as long to make as tens
+            of predictions, and the same for all evidence with one encoder's error.
     """
 
     motion: MotorMotion
@@ -54,7 +60,7 @@ class AxisEvidence(Evidence):
     gains: dict[str, FloatArray] = field(default_factory=dict)
     added: dict[str, float] = field(default_factory=dict)
     drawn: tuple[MotorMotion, ...] = ()
-    unsure: dict[str, FloatArray] = field(default_factory=dict)
+    unsure: Channels = ()
     acting: FloatArray | None = None
     torque_rows: tuple[int, int] | None = None
     weights: dict[str, FloatArray] = field(default_factory=dict)
@@ -63,6 +69,7 @@ class AxisEvidence(Evidence):
     told: FloatArray | None = None
     rests: FlankRests | None = None
     bouncing: BoolArray | None = None
+    evened_unsure: dict[tuple[int, int, int], Channels] = field(default_factory=dict, repr=False)
 
     def where_predictable(self, predictable: BoolArray | FloatArray) -> Self:
         """The evidence without the samples of weight 0, the table position weighed at the others."""
@@ -118,22 +125,24 @@ class AxisEvidence(Evidence):
     def weighted(self, series: dict[str, FloatArray], rows: BoolArray) -> FloatArray:
         """Channels at some samples as any are, less what motion that is not known, or a lead map, may make of them."""
         weighted = super().weighted(series, rows)
-        parts = self._open
-        if not parts or not rows.any():
+        has_map = self.open_map and self.lead_map is not None
+        if not (self.unsure or any(self.law_curves.values()) or has_map) or not rows.any():
             return weighted
         key = rows.tobytes()
         if key not in self._sure:
-            columns = np.column_stack([super(AxisEvidence, self).weighted(part, rows) for part in parts])
-            self._sure[key] = whitener(columns, np.zeros(len(parts)), 1.0)
+            every = self.every(rows)
+            columns = np.column_stack([self.over_noise(part, rows, every) for part in self._open(every)])
+            self._sure[key] = whitener(columns, np.zeros(columns.shape[1]), 1.0)
         return self._sure[key].applied(weighted)
 
-    @cached_property
-    def _open(self) -> list[dict[str, FloatArray]]:
-        """Series of all channels, (n,) each, that a recording may hold, as far as a deviation of one goes."""
-        count = next(iter(self.unsure.values())).shape[1] if self.unsure else 0
-        parts = [{name: columns[:, i] for name, columns in self.unsure.items()} for i in range(count)]
-        parts += [part for curve in self.law_curves.values() for part in curve]
-        return [*parts, *self.map_parts] if self.open_map else parts
+    def _open(self, every: int) -> Channels:
+        """Series of all channels, as `evened`, that a recording may hold, as far as a deviation of one goes."""
+        key = every, self._ends.start, self._ends.stop
+        if key not in self.evened_unsure:
+            self.evened_unsure[key] = tuple(self.all_evened(part, every) for part in self.unsure)
+        others = [part for curve in self.law_curves.values() for part in curve]
+        others += self.map_parts if self.open_map else []
+        return *self.evened_unsure[key], *(self.all_evened(part, every) for part in others)
 
     @property
     def map_parts(self) -> list[dict[str, FloatArray]]:
@@ -168,17 +177,26 @@ class AxisEvidence(Evidence):
         if name not in self.gains:
             return series[::every]
         known = np.isfinite(series)
-        inside = known & self._between_ends
-        mean = float(np.mean(series[inside])) if inside.any() else 0.0  # apart, so that gaps do not make steps
-        filled = np.where(inside, series - mean, 0.0)
-        if inside.any():  # nor does a slow error end in one
-            first, last = np.flatnonzero(inside)[[0, -1]]
-            filled[:first], filled[last + 1 :] = filled[first], filled[last]
+        gaps = not known.all()
+        within = _reach(self._between_ends & known) if gaps else self._ends
+        inner = series[within]
+        there = inner[known[within]] if gaps else inner
+        mean = float(np.mean(there)) if len(there) else 0.0  # apart, so that gaps do not make steps
+        filled = np.zeros(len(series))
+        filled[within] = np.where(known[within], inner - mean, 0.0) if gaps else inner - mean
+        if len(inner):  # nor does a slow error end in one
+            filled[: within.start], filled[within.stop :] = filled[within.start], filled[within.stop - 1]
         key = (name, every)
         if key not in self._weighing:
             self._weighing[key] = Weighing.of(self.gains[name], len(self.counted), every)
         weighed = self._weighing[key](filled)
-        return np.where(known[::every], weighed + self.gains[name][0] * mean, series[::every])
+        weighed += self.gains[name][0] * mean
+        return np.where(known[::every], weighed, series[::every]) if gaps else weighed
+
+    @cached_property
+    def _ends(self) -> slice:
+        """Rows from the first sample that counts to the last."""
+        return _reach(self._between_ends)
 
     @cached_property
     def _between_ends(self) -> BoolArray:
@@ -204,8 +222,16 @@ class AxisEvidence(Evidence):
         if encoder is None:
             return self
         motion = encoder.motion.timed(clock(self.recording))
-        weighed = replace(self, gains=encoder.gains, added=encoder.added, unsure=encoder.unsure)
-        return replace(weighed, motion=motion, told=encoder.told, drawn=encoder.drawn)
+        weighed = replace(self, gains=encoder.gains, added=encoder.added, unsure=encoder.unsure, evened_unsure={})
+        told = replace(weighed, motion=motion, told=encoder.told, drawn=encoder.drawn)
+        return told.in_steps(self.motion.every)
+
+    def in_steps(self, every: int) -> Self:
+        """The evidence with its motion simulated in steps of so many rows."""
+        if every == self.motion.every:
+            return self
+        motion, *drawn = (replace(one, every=every) for one in (self.motion, *self.drawn))
+        return replace(self, motion=motion, drawn=tuple(drawn))
 
     def at_other_times(self, recording: Recording) -> AxisEvidence:
         """The evidence as it is where the same rows have other times: what changes is the motion between them."""
@@ -214,7 +240,7 @@ class AxisEvidence(Evidence):
             angle = known_motion_of(angle, quantisation_step(angle), recording.sample_time)[0]
             angle = angle if self.told is None else angle + self.told
         motion = motor_motion(from_zero(recording), angle).timed(clock(recording))
-        return replace(self, recording=recording, motion=motion)
+        return replace(self, recording=recording, motion=replace(motion, every=self.motion.every))
 
     @property
     def motion_speed(self) -> FloatArray:
@@ -228,9 +254,16 @@ class AxisEvidence(Evidence):
         measured = {**self.measured, name: scale * self.measured[name]}
         noise = {**self.noise, name: abs(scale) * self.noise[name]}
         added = {**self.added, name: abs(scale) * self.added[name]} if name in self.added else self.added
-        unsure = {**self.unsure, name: scale * self.unsure[name]} if self.unsure else {}
+        unsure = tuple({**part, name: scale * part[name]} for part in self.unsure)
         recording = replace(self.recording, channels=channels)
-        return replace(self, recording=recording, measured=measured, noise=noise, added=added, unsure=unsure)
+        scaled = replace(self, recording=recording, measured=measured, noise=noise, added=added)
+        return replace(scaled, unsure=unsure, evened_unsure={})
+
+
+def _reach(rows: BoolArray) -> slice:
+    """From the first of some samples to the last; of none where there are none."""
+    at = np.flatnonzero(rows)
+    return slice(int(at[0]), int(at[-1]) + 1) if len(at) else slice(0, 0)
 
 
 def placed(plant: Plant, zero: float) -> Plant:

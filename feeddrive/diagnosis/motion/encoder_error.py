@@ -32,8 +32,9 @@ error of the motion it is,
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 from scipy.ndimage import uniform_filter
@@ -48,7 +49,7 @@ from feeddrive.plant.analysis.modes import braked_modes
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.flaws import quantisation_step
-from feeddrive.simulate.driven import LoadMotion, MotorMotion, motor_motion, motor_motions, simulate_driven
+from feeddrive.simulate.driven import LoadMotion, MotorMotion, motor_motions, simulate_driven
 from feeddrive.typing import BoolArray, ComplexArray, FloatArray
 
 WINDOW = 0.128
@@ -77,6 +78,9 @@ errors of what shows there alone, such as a damping at its resonance, grow by 5 
 DRAWS = 4
 """Errors that are drawn: with `SMOOTHED` neighbours on either side, a spectrum is known to a fifth."""
 
+AT_ONCE = 8
+"""Motions whose splines are made together: one alone takes three times as long, and more take room for nothing."""
+
 SMALL = 0.1
 """Share of the motion's power up to which an encoder's error is a small one: its square is a hundredth then, and what
 the plant makes of error and of motion is told apart. Beyond, the error's own spectrum is that of the plant that is
@@ -97,7 +101,8 @@ class EncoderError:
         drawn: motions that would be expected if that were the true one, measured by the same encoder.
         gains: channel to the gain at each frequency of its whole series, (n // 2 + 1,).
         added: channel to the rms of what the encoder's error makes of it, in the band [SI].
-        unsure: channel to what the plant makes of motion that may not be, in the band, (n, k) [SI] (`unsure_motion`).
+        unsure: of every part of the motion that may not be, channel to what the plant makes of it, in the band, (n,)
+            [SI] (`unsure_motion`).
         told: part of the motion that the torque tells, (n,) [rad].
     """
 
@@ -105,7 +110,7 @@ class EncoderError:
     drawn: tuple[MotorMotion, ...]
     gains: dict[str, FloatArray]
     added: dict[str, float]
-    unsure: dict[str, FloatArray]
+    unsure: tuple[dict[str, FloatArray], ...]
     told: FloatArray
 
 
@@ -188,18 +193,22 @@ def encoder_error(
     if not material:
         return None
     gains = {name: gain / (1 + (share / SMALL) ** 2) for name, gain in gains.items()}
-    unsure: dict[str, list[FloatArray]] = {name: [] for name in noise}
     held = braked_modes(plant, plant.middle).poles
-    for part in unsure_motions(expected, share, sample_time, band.edge, [p for p in held if p.imag > 0]):
-        try:
-            run = simulate_driven(plant, motor_motion(time, expected + told + known.uncertain(part)))
-        except SimulationError:
-            continue
-        for name, columns in unsure.items():
-            columns.append(units[name] * band.filter(_answer(run, name) - _answer(runs[0], name)))
-    return EncoderError(
-        motion, tuple(drawn), gains, added, {name: np.column_stack(c) for name, c in unsure.items() if c}, told
-    )
+    parts = unsure_motions(expected, share, sample_time, band.edge, [p for p in held if p.imag > 0])
+    unsure = []
+    for run in _runs(plant, time, (expected + told + known.uncertain(part) for part in parts)):
+        unsure.append({name: units[name] * band.filter(_answer(run, name) - _answer(runs[0], name)) for name in noise})
+    return EncoderError(motion, tuple(drawn), gains, added, tuple(unsure), told)
+
+
+def _runs(plant: Plant, time: FloatArray, angles: Iterator[FloatArray]) -> Iterator[LoadMotion]:
+    """What a plant makes of motions, (n,) each [rad], but for those that cannot be followed."""
+    while some := list(islice(angles, AT_ONCE)):
+        for motion in motor_motions(time, np.column_stack(some)):
+            try:
+                yield simulate_driven(plant, motion)
+            except SimulationError:
+                continue
 
 
 def known_motion_of(angle: FloatArray, step: float, sample_time: float) -> tuple[FloatArray, Told]:

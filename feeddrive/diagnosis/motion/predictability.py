@@ -25,7 +25,8 @@ from feeddrive.diagnosis.motion.band import white_noise
 from feeddrive.effects.base import Effect, TransmissionEffect
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.checks.flaws import quantisation_step
-from feeddrive.simulate.driven import MotorMotion, on_grid, simulate_driven
+from feeddrive.simulate.driven import MotorMotion, simulate_driven
+from feeddrive.simulate.row_steps import on_grid
 from feeddrive.typing import BoolArray, FloatArray
 
 TINY_ANGLE = 1e-9

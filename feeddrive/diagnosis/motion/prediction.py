@@ -20,11 +20,15 @@ from feeddrive.effects.base import ChainEffect, DriveEffect, Effect, Kind, Motio
 from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.plant.motor_torque import acting_torques, asked_torques, declared_gain, droops
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.driven import LoadMotion, MotorMotion, simulate_driven, unfollowed
+from feeddrive.simulate.driven import LoadMotion, MotorMotion, simulate_steps, unfollowed
+from feeddrive.simulate.row_steps import at_rate
 from feeddrive.typing import BoolArray, FloatArray
 
 MOTOR_ROOM = 32_000_000
 """Bytes of motor torques kept: those of thirty effects over a minute at 2 kHz, while the values of others are moved."""
+
+INERTIA = "motor_inertia"
+"""Value of an elastic chain that the load side does not notice where the motion of the motor is given."""
 
 
 @dataclass
@@ -45,18 +49,31 @@ class AxisPredictor(Predictor[AxisEvidence]):
     _asked: Remembered[FloatArray] = field(default_factory=lambda: Remembered(lambda torque: torque.nbytes, MOTOR_ROOM))
 
     def load_motion(self, plant: Plant, evidence: AxisEvidence) -> LoadMotion:
-        """Motion of the load side, without what acts at the motor alone."""
+        """Motion of the load side, without what acts at the motor alone but its inertia."""
+        run = self._steps(plant, evidence).at(evidence.motion, plant.chain.motor_radius)
+        return replace(run, torque=run.torque + self._turning(plant, evidence.motion))
+
+    def _steps(self, plant: Plant, evidence: AxisEvidence) -> LoadMotion:
+        """Motion of the load side without the motor's inertia, at the steps of the simulation."""
         bare = evidence.placed(_load_side(plant))
         return self._runs.found(evidence.motion, _values_key(bare), lambda: _simulated(bare, evidence))
 
+    def _turning(self, plant: Plant, motion: MotorMotion) -> FloatArray | float:
+        """Torque that the motor of an elastic chain takes to turn itself [N m], shape (n,)."""
+        inertia = plant.chain_values()[INERTIA] if plant.chain.elastic else 0.0
+        if not inertia:
+            return 0.0
+        return inertia * self._asked.found(motion, INERTIA, lambda: at_rate(motion.acceleration, motion.substeps))
+
     def predict(self, plant: Plant, evidence: AxisEvidence) -> dict[str, FloatArray]:
         """Channel to predicted series in the band, shape (n,), SI."""
-        run = self.load_motion(plant, evidence)
-        torque = _asked(plant, evidence, run.torque + self._motor_sources(plant, evidence.motion))
+        run, motion = self._steps(plant, evidence), evidence.motion
+        at_motor = self._turning(plant, motion) + self._motor_sources(plant, motion)
+        torque = _asked(plant, evidence, run.torque_at(motion) + at_motor)
         step = evidence.recording.sample_time
         if evidence.torque_rows is not None:  # the drive's own row begins half a row before what it acts about
             torque = repeated(lagging(torque, -0.5 * step, step), evidence.torque_rows)
-        raw = {"motor_torque": torque, "table_position": run.table_position}
+        raw = {"motor_torque": torque, "table_position": run.table_at(motion, plant.chain.motor_radius)}
         series = {name: evidence.band.filter(raw[name]) for name in evidence.channels}
         if evidence.scaled_from:
             series["motor_torque"] *= self.scale(plant)
@@ -158,20 +175,24 @@ def _asked_for(effect: SourceEffect, motion: MotorMotion) -> FloatArray:
 def _simulated(plant: Plant, evidence: AxisEvidence) -> LoadMotion:
     """The driven simulation; no numbers where the plant cannot be followed with these values."""
     try:
-        return simulate_driven(plant, evidence.motion, rests=evidence.rests)
+        return simulate_steps(plant, evidence.motion, rests=evidence.rests)
     except SimulationError:
-        return unfollowed(evidence.motion)
+        return unfollowed(evidence.motion.steps)
 
 
 def _load_side(plant: Plant) -> Plant:
     """The plant as the load side sees it: chain effects in the chain's values, nothing that acts at the motor alone.
+
+    What the motor takes to turn itself in an elastic chain is in proportion to its inertia: left out, every inertia has
+    one motion of the load.
 
     What does nothing with the values that it has is left out as well: a candidate that begins with none of it is the
     machine without it.
     """
     kept = tuple(e for e in plant.motion_effects if not (_at_motor_alone(e) or _in_values(e) or is_absent(e, plant)))
     values = plant.chain_values()
-    chain = replace(plant.chain, values={key: values[key] for key in plant.chain.values})
+    unseen = {INERTIA: 0.0} if plant.chain.elastic else {}
+    chain = replace(plant.chain, values={key: values[key] for key in plant.chain.values} | unseen)
     return replace(plant, mechanics=chain, effects=kept)
 
 

@@ -44,7 +44,10 @@ class Weighing:
         rows = -(-self.count // every)
         length = rows if self.size == rows else 2 * rows - 1
         begin = (every * (rows - length - 1) + 1) % self.count  # what precedes the first asked sample comes first
-        past = np.concatenate([series[begin:], series, series])[: length * every]
-        spectra = rfft(np.ascontiguousarray(past.reshape(length, every).T), self.size)
+        missing = length * every - (self.count - begin)
+        past = np.concatenate([series[begin:], series[:missing], series[: max(missing - self.count, 0)]])
+        together = np.zeros((every, self.size))
+        together[:, :length] = past[: length * every].reshape(length, every).T
+        spectra = rfft(together)
         found: FloatArray = irfft(np.einsum("pf,pf->f", spectra, self.spectra), self.size)
         return found[length - rows : length]

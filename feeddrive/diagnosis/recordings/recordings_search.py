@@ -12,7 +12,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from feeddrive.diagnosis.calibration.calibrate import recalibrated, with_new_slopes
+from feeddrive.diagnosis.calibration.calibrate import recalibrated
+from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes
 from feeddrive.diagnosis.finding.attempt import with_predictable
 from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.finding.sets import needed_members

@@ -19,7 +19,7 @@ from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.effects.base import Effect
-from feeddrive.effects.chain.structural_mode import StructuralMode
+from feeddrive.effects.chain.structural_mode import StructuralMode, resonates_within
 from feeddrive.typing import BoolArray, ComplexArray, FloatArray
 
 FREQUENCIES = 60
@@ -55,8 +55,7 @@ def structural_mode(scene: Scene) -> list[list[Effect]]:
     (share, mass), f, zeta = _polished(seen, float(f), zeta)
     start = StructuralMode.of(mass=max(mass, 1e-6), frequency=f, damping=zeta)
     better = share - payload > LEAST_SHARE * (1 - payload)
-    resonates = f < seen.edge and zeta < 1  # braked critically it rings no more than a payload
-    shows = better or (share > LEAST_SHARE and resonates)
+    shows = better or (share > LEAST_SHARE and resonates_within(start, seen.edge))
     return [[start]] if shows and is_material(start, scene.plant) else []
 
 

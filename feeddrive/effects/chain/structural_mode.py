@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from feeddrive.effects.base import ChainEffect, Parameter, Port, Signature
+from feeddrive.effects.base import ChainEffect, Effect, Parameter, Port, Signature, number
 from feeddrive.typing import Expression
 
 
@@ -43,3 +43,8 @@ class StructuralMode(ChainEffect):
     def chain(self, chain: dict[str, Expression], p: Mapping[str, Expression]) -> dict[str, Expression]:
         """The chain's values with those of the mode, under its label; see `feeddrive.plant.chain.table_mode`."""
         return {**chain, **{f"{self.label}.{key}": p[key] for key in ("mass", "frequency", "damping")}}
+
+
+def resonates_within(mode: Effect, edge: float) -> bool:
+    """Whether a mode resonates below a frequency [Hz]; braked critically it rings no more than a payload."""
+    return number(mode.values["frequency"]) < edge and number(mode.values["damping"]) < 1
