@@ -29,6 +29,7 @@ from feeddrive.diagnosis.judging.veto import not_worse_than_declared, without_de
 from feeddrive.diagnosis.ledger.entry import kept_of
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.row_steps import in_told_steps
 from feeddrive.diagnosis.numbers.doubted import sentence, without_wrong
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
 from feeddrive.diagnosis.numbers.number_rows import MeasuredRows, NumberResult, number_results, refuse_ungiven
@@ -255,6 +256,8 @@ def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[
     budget = begun.problem.budget
     budget.end_of_search()
     found = searched.search
+    machine = found.problem.machine(found.fit.effects)
+    evidence = [in_told_steps(one, machine, found.problem.predictor) for one in evidence]
     progress("judging on data not fitted")
     judged, rehomed = _judged(found, evidence)
     if (fewer := without_stand_ins(found, judged)) is not found:
@@ -272,11 +275,16 @@ def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[
         if len(again.fit.effects) > len(kept.fit.effects):
             kept, judged = without_denied(again, judge(again), judge)
     found = kept
-    preferred, rivals = with_the_preferred(found, rivals_of(found, judged))
+    rivals = rivals_of(found, judged)
+    preferred, ranked = with_the_preferred(found, rivals)
     if preferred is not found:
-        kept, judged = without_denied(preferred, judge(preferred), judge)
-        rivals = rivals if kept is preferred else rivals_of(kept, judged)
-        found = kept
+        kept, after = without_denied(preferred, judge(preferred), judge)
+        denied = _names(preferred) - _names(found) - _names(kept)
+        if denied:  # what its own evidence denies takes no place: what was taken stands
+            rivals = [[rival for rival in alike if rival.effect.name not in denied] for alike in rivals]
+        else:
+            found, judged = kept, after
+            rivals = ranked if kept is preferred else rivals_of(kept, after)
     sure = asserted(found)
     if sure is not found:
         found, judged = sure, judge(sure)
@@ -289,6 +297,10 @@ def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[
         refinement = refined(found, refinement.outcome, lambda other: _judged(other, evidence))
         found, (judged, rehomed) = refinement.found, refinement.outcome
     return _Settled(replace(searched, search=found), rivals, judged, rehomed, refinement)
+
+
+def _names(found: Search) -> set[str]:
+    return {effect.name for effect in found.fit.effects}
 
 
 def _without_fault(

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.calibration import calibrate
+from feeddrive.diagnosis.calibration import value_slopes
 from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import calibrated_values
 from feeddrive.diagnosis.likelihood.problem import Problem
@@ -44,7 +44,7 @@ def test_slopes_tell_nothing_of_what_scales_every_force(problem: Problem) -> Non
     alike = np.array([one.scales_with_force / one.deviation for one in values])
     whole = problem.evidence[0]
     evidence = whole.where_predictable(predictable_samples(problem.machine(PLAY), whole))
-    for name, of_rows in calibrate.slopes_of(problem, PLAY, evidence).items():
+    for name, of_rows in value_slopes.slopes_of(problem, PLAY, evidence).items():
         slopes = of_rows[evidence.thinned(evidence.fit_rows)]
         largest = np.linalg.norm(slopes * alike, axis=0).max()
         # an exact invariance of the equations: what is left is the rounding of two simulations
@@ -55,8 +55,8 @@ def test_agreeing_slopes_are_changed_no_more_than_they_miss() -> None:
     random = np.random.default_rng(3)
     slopes, direction = random.standard_normal((50, 4)), np.array([2.0, -1.0, 0.0, 0.5])
     along = random.standard_normal(50)
-    agreeing = calibrate._agreeing(slopes, direction, along)
+    agreeing = value_slopes._agreeing(slopes, direction, along)
     np.testing.assert_allclose(agreeing @ direction, along, atol=1e-12)
     np.testing.assert_array_equal(agreeing[:, 2], slopes[:, 2])  # takes no part in it
-    np.testing.assert_allclose(calibrate._agreeing(slopes, direction, slopes @ direction), slopes, atol=1e-12)
-    assert not calibrate._agreeing(np.zeros((2, 4)), direction, np.ones(2)).any()  # rows that no value moves
+    np.testing.assert_allclose(value_slopes._agreeing(slopes, direction, slopes @ direction), slopes, atol=1e-12)
+    assert not value_slopes._agreeing(np.zeros((2, 4)), direction, np.ones(2)).any()  # rows that no value moves

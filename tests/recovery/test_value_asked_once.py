@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.calibration import calibrate
+from feeddrive.diagnosis.calibration import value_slopes
 from feeddrive.diagnosis.calibration.beyond import with_torque_scale
 from feeddrive.diagnosis.calibration.calibrate import calibrated, recalibrated
 from feeddrive.diagnosis.finding import refitting
@@ -88,8 +88,9 @@ def test_slopes_of_machines_that_cannot_be_simulated_move_no_value(
         }
         return replace(there, calibration=replace(known, slopes=slopes))
 
-    monkeypatch.setattr(calibrate, "with_new_slopes", none_there)
-    assert recalibrated(problem, ()) is problem
+    monkeypatch.setattr(value_slopes, "with_new_slopes", none_there)
+    without = replace(problem, calibration=replace(known, taken=None))
+    assert recalibrated(without, ()) is without
 
 
 def test_the_scale_of_the_torque_goes_before_the_machine_only_where_it_is_the_likelier(tmp_path: Path) -> None:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated
-from feeddrive.diagnosis.finding.refitting import at_rest, cost, stepped_together
+from feeddrive.diagnosis.calibration.together import stepped_together
+from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes
+from feeddrive.diagnosis.finding.refitting import at_rest, cost
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.effects.source.torque_ripple import TorqueRipple
 from tests.recovery.rigid_runs import Truth
@@ -26,5 +29,18 @@ def test_values_that_begin_elsewhere_come_to_the_same_rest(tmp_path: Path, away:
     # each ends where a step takes less than half a nat: a variance of the doubled cost
     assert abs(cost(*rest, variance) - cost(*begin, variance)) < 2 * variance
     assert unmoved > cost(*rest, variance) + 100 * variance
-    again = stepped_together(*rest)
-    assert cost(*rest, variance) - cost(*again, variance) < variance
+    again, found = stepped_together(rest[0], rest[1].effects)
+    assert cost(*rest, variance) - cost(again.settled(found.effects), found, variance) < variance
+
+
+@pytest.mark.parametrize("away", [-3.0, 3.0])
+def test_slopes_at_rest_are_those_of_where_it_is(tmp_path: Path, away: float) -> None:
+    near = calibrated(begun(tmp_path, Truth(coulomb=1.2)))
+    assert near.calibration is not None
+    far = near.at_values(near.calibration.coordinates + away)
+    there, found = at_rest(far, fit(far, (TorqueRipple.of(amplitude=1e-5, order=3.7, phase=0.4),)))
+    anew = with_new_slopes(there, found.effects)
+    assert there.whitener is not None and anew.whitener is not None
+    columns, others = there.whitener.columns, anew.whitener.columns
+    # the step of a slope is a thousandth of a value, and a slope is off by as much
+    assert np.linalg.norm(columns - others) < 1e-3 * np.linalg.norm(others)

@@ -10,13 +10,11 @@ import numpy as np
 from scipy.special import chdtri
 
 from feeddrive.diagnosis.calibration.calibrate import (
-    ENOUGH,
     PASSES,
     at_declared,
     moved,
     recalibrated,
     with_kept,
-    with_new_slopes,
 )
 from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import (
@@ -27,6 +25,8 @@ from feeddrive.diagnosis.calibration.declared import (
     said_share,
 )
 from feeddrive.diagnosis.calibration.known import TOLERANCE, Known, known_values
+from feeddrive.diagnosis.calibration.together import fitted_together
+from feeddrive.diagnosis.calibration.value_slopes import ENOUGH, with_slopes
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import regained
@@ -93,7 +93,7 @@ def _is_of_torque(known: Known) -> bool:
     scale = _torque_scale(known)
     if not scale:
         return False
-    gained, gain = _gained(known), known.least() - known.least(*scale)
+    gained, gain = _gained(known), _gain(known, scale)
     if gain <= _sure(scale):
         return False
     left = known.least(*scale)
@@ -113,14 +113,24 @@ def _sure(places: Sequence[int]) -> float:
 
 
 def _gained(known: Known | None) -> dict[tuple[int, ...], float]:
-    """Places of the values that one effect says to be other, to what they lower T by where they are free."""
+    """Places of the values that one effect says to be other, to what they lower T by where they are free (`_gain`)."""
     if known is None:
         return {}
-    least, stated = known.least(), dict[tuple[str, str], tuple[int, ...]]()
+    stated = dict[tuple[str, str], tuple[int, ...]]()
     for i, value in enumerate(known.values):
         if value.name:
             stated[value.name, value.place] = (*stated.get((value.name, value.place), ()), i)
-    return {places: least - known.least(*places) for places in stated.values()}
+    return {places: _gain(known, places) for places in stated.values()}
+
+
+def _gain(known: Known, places: Sequence[int]) -> float:
+    """What values lower T by where they are free of their tolerances, over the variance that is left then.
+
+    What contradicts itself still, each of the other values within its tolerance, scatters by more than is told: by
+    T over their number where that is more than one (Birge, Phys. Rev. 40 (1932) 207).
+    """
+    left, others = known.least(*places), len(known.values) - len(places)
+    return (known.least() - left) / max(left / others if others else 1.0, 1.0)
 
 
 def placed_by_scatter(problem: Problem, found: Fit) -> Known | None:
@@ -133,19 +143,27 @@ def placed_by_scatter(problem: Problem, found: Fit) -> Known | None:
     there = at_declared(problem)
     declared = there.machine(found.effects)
     there = replace(there, evidence=tuple(weighed_by(e, declared) for e in there.evidence))
-    effects = found.effects
+    effects, share, before = found.effects, 1.0, np.zeros(0)
     for _ in range(PASSES):
-        there = with_new_slopes(there, effects)
+        there = with_slopes(there, effects)
         result = fit(there, effects)
         effects, known = result.effects, known_values(there, result)
         if known is None:
             return None
         u, _ = known.likeliest({})
-        coordinates = np.array([known.c(i, float(one)) for i, one in enumerate(u)])
-        if np.max(np.abs(coordinates - known.at), initial=0.0) < ENOUGH:
+        step = np.array([known.c(i, float(one)) for i, one in enumerate(u)]) - known.at
+        if np.max(np.abs(step), initial=0.0) < ENOUGH:
             break
-        there = there.at_values(coordinates)
+        share = _share(share, before, step) if len(before) else 1.0
+        there, before = there.at_values(known.at + share * step), step
     return known
+
+
+def _share(share: float, before: FloatArray, step: FloatArray) -> float:
+    """Share of a step, (k,), of a search for a fixed point, after a share of the one before it; the whole at most."""
+    turn = step - before
+    told = -share * float(before @ turn) / float(turn @ turn) if np.any(turn) else 1.0
+    return min(told, 1.0) if told > 0 else 1.0
 
 
 def _with_free_values(problem: Problem, effects: Sequence[Effect], places: Sequence[int]) -> Problem:
@@ -163,7 +181,7 @@ def _with_free_values(problem: Problem, effects: Sequence[Effect], places: Seque
         values[place] = replace(values[place], deviation=values[place].deviation * by, widened=by)
     slopes = {of: {name: rows * wider for name, rows in one.items()} for of, one in known.slopes.items()}
     more = known.number_slopes * wider if known.number_slopes.size else known.number_slopes
-    free = Calibration(tuple(values), known.coordinates / wider, slopes, known.variance, more)
+    free = Calibration(tuple(values), known.coordinates / wider, slopes, known.variance, more, known.taken)
     problem = replace(problem, calibration=free)
     for _ in range(PASSES):
         before = problem
@@ -171,25 +189,6 @@ def _with_free_values(problem: Problem, effects: Sequence[Effect], places: Seque
         if np.max(np.abs(moved(before, problem)), initial=0.0) < ENOUGH:
             break
     return problem
-
-
-def fitted_together(problem: Problem, effects: Sequence[Effect], passes: int = PASSES) -> tuple[Problem, list[Effect]]:
-    """Effects and declared values fitted in turn until neither moves: alike, each bends what the other is told by.
-
-    Args:
-        problem: with the values to begin from.
-        effects: beside them.
-        passes: at most; values that the recordings hardly tell apart never come to rest.
-    """
-    if problem.calibration is None:  # all declared values are exact
-        return problem, [*fit(problem, effects).effects]
-    for _ in range(passes):
-        before = problem = recalibrated(problem, effects)
-        effects = fit(problem, effects).effects
-        problem = problem.settled(effects)
-        if np.max(np.abs(moved(before, problem)), initial=0.0) < ENOUGH:
-            break
-    return problem, [*effects]
 
 
 def given_back(problem: Problem, effect: Effect) -> Problem:
@@ -210,7 +209,8 @@ def given_back(problem: Problem, effect: Effect) -> Problem:
 
     slopes = {of: {name: placed(rows) for name, rows in one.items()} for of, one in known.slopes.items()}
     numbers = placed(known.number_slopes) if len(known.number_slopes) else np.zeros((0, len(values)))
-    given = Calibration(tuple(values), placed(known.coordinates), slopes, known.variance, numbers)
+    taken = known.taken if len(values) == len(old) else None
+    given = Calibration(tuple(values), placed(known.coordinates), slopes, known.variance, numbers, taken)
     return replace(problem, calibration=given)
 
 

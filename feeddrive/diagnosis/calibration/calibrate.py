@@ -11,38 +11,19 @@ import numpy as np
 from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, calibrated_values
 from feeddrive.diagnosis.calibration.known import known_values
+from feeddrive.diagnosis.calibration.value_slopes import ENOUGH, slopes_of, with_slopes
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
-from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.evidence import UNSEEN, Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.diagnosis.motion.preparing import weighed_by
 from feeddrive.effects.base import Effect
 from feeddrive.recording import Recording
 from feeddrive.recording.long.joined import is_joined
 from feeddrive.typing import FloatArray
 
-STEP = 1e-3
-"""Change of the logarithm of a value from which its slope is taken; ten times that of a coordinate of size one."""
-
-SHORT, SHORTEST = 1.0, STEP / 30
-"""Deviations of the noise by which the step of a slope moves all rows together at most, and the shortest step. What a
-fine scale sees of a mass or a stiffness bends with the resonance: over a thousandth its slope was two per cent off, and
-values that weigh against each other, an inertia, a mass, a torque constant, could not move together. Shorter ones show
-where the solver changes its steps."""
-
-LONG = 30 * STEP
-"""Change of the logarithm where a prediction goes from cell to cell, or a table bounces (`slopes.COARSE`)."""
-
-ENOUGH = 0.1
-"""Move of a value over its deviation that needs no new slopes: it moves the evidence by a two-hundredth."""
-
 PASSES = 8
 """New slopes at most, before anything is found and beside a value that is beyond its tolerance."""
-
-UNSEEN = 0.1
-"""Deviations of the noise by which a value within its tolerance moves all rows together, below which they do not see
-it: its interval would be narrower than its tolerance by half a per cent."""
 
 
 def calibrated(problem: Problem) -> Problem:
@@ -68,7 +49,7 @@ def calibrated(problem: Problem) -> Problem:
 
 
 def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:
-    """The problem with new slopes, and its declared values as they are most likely beside these effects.
+    """The problem with slopes of where it is, and its declared values as they are most likely beside these effects.
 
     Args:
         problem: with the values to begin from.
@@ -78,7 +59,7 @@ def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = Fals
     known = problem.calibration
     if known is None or not known.values:
         return problem
-    sloped = with_new_slopes(problem, effects, rough)
+    sloped = with_slopes(problem, effects, rough)
     assert sloped.calibration is not None
     slopes = [rows for channels in sloped.calibration.slopes.values() for rows in channels.values()]
     if not all(np.all(np.isfinite(rows)) for rows in slopes):  # a machine near this one cannot be simulated
@@ -164,84 +145,6 @@ def weighed_alike(evidence: Evidence, like: Sequence[Evidence]) -> Evidence:
         for name in evidence.channels
     }
     return replace(evidence, left=left) if any(one.left for one in like) else evidence
-
-
-def with_new_slopes(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:
-    """The problem with the slopes of its declared values beside these effects, the values as they are."""
-    if problem.calibration is None or not problem.calibration.values:
-        return problem
-    slopes = {e.recording: slopes_of(problem, effects, e, rough) for e in problem.evidence}
-    more = _number_slopes(problem, effects)
-    return replace(problem, calibration=replace(problem.calibration, slopes=slopes, number_slopes=more))
-
-
-def _number_slopes(problem: Problem, effects: Sequence[Effect]) -> FloatArray:
-    """Slope of the measured numbers with the coordinates of the declared values, over their deviations, (n, k)."""
-    known, rows = problem.calibration, replace(problem.numbers, weight=1.0)
-    assert known is not None
-    if not len(rows):
-        return np.zeros((0, len(known.values)))
-    base, columns = rows.predicted(problem.machine(effects)), []
-    for i, value in enumerate(known.values):
-        step = STEP / value.deviation
-        coordinates = known.coordinates.copy()
-        coordinates[i] += step
-        there = replace(problem, calibration=replace(known, coordinates=coordinates)).machine(effects)
-        columns.append((rows.predicted(there) - base) / step)
-    return np.column_stack(columns)
-
-
-def slopes_of(
-    problem: Problem, effects: Sequence[Effect], evidence: Evidence, rough: bool = False
-) -> dict[str, FloatArray]:
-    """Channel to its slope with the coordinates of the declared values, (n, k), SI.
-
-    From both sides where the step must be long (`LONG`): one side's slope would be that of half a step away, and where
-    two values are alike, fits along it end where the slopes are wrong, not where the values are right. Masses,
-    stiffnesses, dampings, frictions and the torque constant that all grow alike change no prediction where all are
-    fitted: beside a free play a long step's secants, some per cent off, would tell of what no recording tells. What
-    they do together is therefore taken from one step of all of them, and the slopes agree with it.
-    """
-    known = problem.calibration
-    assert known is not None
-
-    def at(direction: FloatArray, step: float) -> dict[str, FloatArray]:
-        coordinates = known.coordinates + direction * step
-        there = replace(problem, calibration=replace(known, coordinates=coordinates)).machine(effects)
-        return problem.predictor.predict(there, evidence)
-
-    bounces = has_play(effects) and evidence.lost is not None
-    each, alike = np.eye(len(known.values)), np.array([one.scales_with_force / one.deviation for one in known.values])
-    smooth, base = problem.predictor.smooth(problem.plant) and not bounces, at(alike, 0.0)
-    slopes = {name: np.empty((len(base[name]), len(known.values))) for name in evidence.channels}
-    sizes = np.zeros(len(known.values))
-    if smooth and not rough and known.slopes and problem.whitener is not None:
-        sizes = np.linalg.norm(problem.whitener.columns, axis=0)
-    for i, value in enumerate(known.values):
-        step = (STEP if smooth else LONG) / value.deviation
-        step = max(min(step, SHORT / sizes[i]), SHORTEST / value.deviation) if sizes[i] > 0 else step
-        after, before, apart = at(each[i], step), base, step
-        if not smooth and not rough:
-            before, apart = at(each[i], -step), 2 * step
-        for name in evidence.channels:
-            slopes[name][:, i] = (after[name] - before[name]) / apart
-    if smooth:
-        return slopes
-    after, before, apart = at(alike, LONG), base, LONG
-    if not rough:
-        before, apart = at(alike, -LONG), 2 * LONG
-    return {name: _agreeing(k, alike, (after[name] - before[name]) / apart) for name, k in slopes.items()}
-
-
-def _agreeing(slopes: FloatArray, direction: FloatArray, along: FloatArray) -> FloatArray:
-    """Slopes (n, k) that are `along`, (n,), in a direction (k,), each changed by the square of its share of a row."""
-    shares = (slopes * direction) ** 2
-    whole = np.sum(shares, axis=1, keepdims=True)
-    shares = np.divide(shares, whole, out=np.zeros_like(shares), where=whole > 0)
-    missed = along - slopes @ direction
-    inverse = np.divide(1.0, direction, out=np.zeros_like(direction), where=direction != 0)
-    agreeing: FloatArray = slopes + shares * missed[:, None] * inverse
-    return agreeing
 
 
 def with_recordings(problem: Problem, effects: Sequence[Effect], more: Sequence[Evidence]) -> Problem:

@@ -25,6 +25,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from feeddrive.diagnosis.calibration.declared import CalibratedValue
+from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
 
@@ -39,6 +40,7 @@ class Calibration:
         slopes: recording to channel to its slope with c, (n, k), SI.
         variance: λ.
         number_slopes: slope of the numbers that were measured beside the recordings, over their deviations, (n, k).
+        taken: machine of which the slopes are; None where they are of none, or rough.
     """
 
     values: tuple[CalibratedValue, ...]
@@ -46,6 +48,7 @@ class Calibration:
     slopes: Mapping[Recording, Mapping[str, FloatArray]]
     variance: float
     number_slopes: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
+    taken: Plant | None = None
 
 
 @dataclass(frozen=True, eq=False)

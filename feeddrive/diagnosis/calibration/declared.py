@@ -106,6 +106,8 @@ _CHAIN = (
 )
 """Value of a chain, its words and unit, its kind, the effect that says that it is other, and where that acts."""
 
+_NAMES = {name for *_, name, _ in _CHAIN if name} | {FrictionDeviation.name}
+
 
 def calibrated_values(plant: Plant) -> tuple[CalibratedValue, ...]:
     """The declared values of a plant that are fitted; none where all are exact."""
@@ -213,6 +215,11 @@ def as_effect(plant: Plant, value: CalibratedValue, coordinate: float) -> Effect
                 port, coulomb_factor=factor if coulomb else 1.0, viscous_factor=1.0 if coulomb else factor
             )
     raise ValueError(f"no effect says that {value.words} is other than declared")
+
+
+def says_other(effect: Effect) -> bool:
+    """Whether what an effect says is that a declared value is other; likely is what any value misses by, not a size."""
+    return effect.name in _NAMES
 
 
 def is_said_by(value: CalibratedValue, effect: Effect) -> bool:

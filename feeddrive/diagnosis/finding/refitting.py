@@ -2,32 +2,30 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import (
-    beyond_tolerance,
-    fitted_together,
-    said_by_effects,
-    with_torque_scale,
-)
+from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, said_by_effects, with_torque_scale
 from feeddrive.diagnosis.calibration.calibrate import (
     PASSES,
     at_declared,
     of_hours,
-    recalibrated,
     recalibrated_by_rest,
-    with_new_slopes,
 )
 from feeddrive.diagnosis.calibration.known import TOLERANCE
+from feeddrive.diagnosis.calibration.together import fitted_together, stepped_together
+from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes, with_slopes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.spring_law import TOLD
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between
+from feeddrive.diagnosis.motion.row_steps import in_told_steps
 from feeddrive.effects.base import number
 from feeddrive.effects.chain.payload import Payload
-from feeddrive.effects.chain.structural_mode import StructuralMode
+from feeddrive.effects.chain.structural_mode import StructuralMode, resonates_within
 
 
 def refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
@@ -41,36 +39,43 @@ def refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     result = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
     assert there.calibration is not None
     # That of hours has begun as declared, and other weights are no lower error.
-    if not of_hours(there) and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
-        anew = recalibrated(at_declared(problem), found.effects)
-        other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
-        result = min(result, other, key=lambda one: one[1].squared_error)
+    begun = of_hours(there) or not problem.calibration.coordinates.any()
+    if not begun and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
+        other = stepped_together(at_declared(problem), found.effects, JOINT_ITERATIONS)
+        variance = there.calibration.variance
+        result = min(result, other, key=lambda one: cost(one[0].settled(one[1].effects), one[1], variance))
     return balanced(*result)
+
+
+def in_steps_told(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """A set fitted where its machine is simulated in steps that nothing tells from the rows of the recordings."""
+    machine = problem.machine(found.effects)
+    evidence = tuple(in_told_steps(e, machine, problem.predictor) for e in problem.evidence)
+    if all(one is other for one, other in zip(evidence, problem.evidence, strict=True)):
+        return problem, found
+    there = replace(problem, evidence=evidence)
+    return refitted(there, fit(there, found.effects, iterations=JOINT_ITERATIONS))
 
 
 def at_rest(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     """Declared values and effects from which no step leads to a likelier plant; `PASSES` steps at most.
 
     A set that is new moves values that stood in for it, and slopes are those of where they stood: the first step is
-    rarely the last. A step counts that makes the recordings likelier by half a nat, as one value off by a deviation.
+    rarely the last, and every one here has slopes of its own. A step counts that makes the recordings likelier by half
+    a nat, as one value off by a deviation. The slopes at the end are those of where it ends: masses, stiffnesses and
+    the torque constant that all grow alike change no prediction, and slopes of elsewhere would tell them apart.
     """
     known = problem.calibration
     if known is None or not known.values or of_hours(problem):
         return problem, found
+    problem, variance = with_new_slopes(problem, found.effects), known.variance
     for _ in range(PASSES):
-        there, then = stepped_together(problem, found)
-        variance = known.variance
+        there, then = stepped_together(problem, found.effects, JOINT_ITERATIONS)
+        there = there.settled(then.effects)
         if cost(problem, found, variance) - cost(there, then, variance) <= variance:
             break
-        problem, found = there, then
-    return problem, found
-
-
-def stepped_together(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
-    """Declared values with new slopes, then the effects beside them."""
-    there = recalibrated(problem, found.effects)
-    fitted = fit(there, found.effects, iterations=JOINT_ITERATIONS)
-    return there.settled(fitted.effects), fitted
+        problem, found = with_new_slopes(there, then.effects), then
+    return problem, fit(problem, found.effects, iterations=0)
 
 
 def cost(problem: Problem, found: Fit, variance: float) -> float:
@@ -109,12 +114,12 @@ def as_payload(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
     if StructuralMode.name not in names or Payload.name in names:
         return problem, found
     place = names.index(StructuralMode.name)
-    mass, damping, frequency = (number(found.effects[place].values[key]) for key in ("mass", "damping", "frequency"))
-    resonates = damping < 1 and frequency < max(e.edge for e in problem.evidence)
-    payload = Payload.of(mass=mass)
+    mode = found.effects[place]
+    payload = Payload.of(mass=number(mode.values["mass"]))
     rest = (*found.effects[:place], *found.effects[place + 1 :])
     there, effects = said_by_effects(problem, (*rest, payload))
     other = refitted(there, fit(there, effects, iterations=JOINT_ITERATIONS))
+    resonates = resonates_within(mode, max(e.edge for e in problem.evidence))
     told = resonates and odds_between(Standing(*other), Standing(problem, found), count) > TOLD
     return (problem, found) if told else other
 
@@ -142,7 +147,7 @@ def begun_as_declared(problem: Problem, found: Fit) -> tuple[Problem, Fit] | Non
         return None
     if problem.plain_error(found.effects) < UNEXPLAINED or problem.budget.skips("rounds beside the declared values"):
         return None
-    there = with_new_slopes(at_declared(problem), found.effects)
+    there = with_slopes(at_declared(problem), found.effects)
     return there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
 
 

@@ -36,7 +36,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import betaln
 
-from feeddrive.diagnosis.calibration.declared import calibrated_values, is_said_by, said_share
+from feeddrive.diagnosis.calibration.declared import calibrated_values, is_said_by, said_share, says_other
 from feeddrive.diagnosis.certainty.imitations import lost_motion
 from feeddrive.diagnosis.certainty.uncertainty import score_variances
 from feeddrive.diagnosis.likelihood.coordinate_kinds import Linear
@@ -59,10 +59,6 @@ from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND
 from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.effects.base import Effect, number
-from feeddrive.effects.chain.inertia_deviation import InertiaDeviation
-from feeddrive.effects.chain.payload import Payload
-from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
-from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.errors import InputError
@@ -71,9 +67,6 @@ from feeddrive.typing import BoolArray, FloatArray
 
 PLACES = frozenset({"centre"})
 """Coordinates that are places on the axis: one some hundred strokes away is no place, and the law there is another."""
-
-SAYS_OTHER = (Payload, InertiaDeviation, StiffnessDeviation, FrictionDeviation)
-"""Effects that say that a declared value is other: likely is what any value misses by (`BEYOND`), not a size."""
 
 TINY = 1e-9
 """In place of a width of nothing over its size [1]: no data tell a femtometre from none."""
@@ -124,7 +117,7 @@ def _declared_shares(effects: Sequence[Effect], plant: Plant, coordinates: Float
     for effect in effects:
         own = coordinates_of(effect, plant)
         size = sum(len(one.read(effect)) for one in own)
-        if len(own) == size and isinstance(effect, SAYS_OTHER):
+        if len(own) == size and says_other(effect):
             values = calibrated_values(plant) if values is None else values
             (there,) = write_coordinates([effect], plant, coordinates[at : at + size])
             said = {value.key: said_share(plant, value, there) for value in values if is_said_by(value, effect)}
