@@ -16,6 +16,7 @@ from feeddrive.files import plants_folder
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
+from feeddrive.report.words.verdict import verdict_sentences
 from tests.generator import BENCH, recording_pair
 from tests.generator import effects as planted
 from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
@@ -87,6 +88,12 @@ def test_a_judged_recording_with_another_level_is_recognised_and_its_error_stays
     assert torque.after.rms > 3 * torque.noise_rms  # the change is stated, and lowers no error
     assert result.changes.explains is not None
     assert result.changes.explains["motor_torque"] > 0.9
+    # with the level allowed for nothing is left, and the verdict does not call it unexplained
+    left = result.unexplained["motor_torque"]
+    assert left.above is not None
+    assert not left.above.is_left
+    assert left.statement.startswith("What differs in the judged recordings is allowed for here.")
+    assert "Still unexplained" not in " ".join(verdict_sentences(result))
 
 
 @pytest.mark.slow

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,18 +13,20 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging import veto
-from feeddrive.diagnosis.judging.judge import Judged, prepared_for_judging
+from feeddrive.diagnosis.judging.judge import Judged, Share, prepared_for_judging
 from feeddrive.diagnosis.judging.veto import ends_reached, not_worse_than_declared, without_denied, worse_by
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.preparation import prepared
-from feeddrive.effects.base import Effect
+from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import find_effect
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.friction.coulomb_asymmetry import CoulombAsymmetry
 from feeddrive.effects.friction.stribeck import Stribeck
 from feeddrive.effects.source.torque_ripple import TorqueRipple
+from feeddrive.errors import InputError
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
@@ -72,6 +75,19 @@ def test_nothing_is_kept_of_a_recording_in_which_nothing_lacks(rigid: Plant, eff
     assert found.fit.effects == () and list(found.impossible) == [effect.name]
 
 
+def test_a_step_to_a_plant_that_cannot_be_simulated_denies_nothing(
+    rigid: Plant, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The others are refitted then, from where they are: one linear step may lead anywhere."""
+
+    def not_followed(problem: Problem, judged: Sequence[Judged], moved: Sequence[Effect]) -> Share:
+        raise InputError("the plant cannot be simulated with this motion", problem.plant.name, "")
+
+    monkeypatch.setattr(veto, "share_beyond", not_followed)
+    found, _ = kept_of(rigid, Truth(ripple=0.01), RIPPLE, Stribeck.of(delta_force=0.2, velocity=0.02))
+    assert [effect.name for effect in found.fit.effects] == ["torque_ripple"]
+
+
 def test_channel_made_worse_is_given_back(rigid: Plant) -> None:
     """A value that no fit has moved, and that is wrong: worse than declared, and gone."""
     found, judged = kept_of(rigid, Truth(), Payload.of(mass=15.0), iterations=0)
@@ -112,6 +128,10 @@ def test_value_at_the_end_of_what_is_physical_is_no_estimate(rigid: Plant) -> No
     assert far[0].values["amplitude"] == 1e-3 and ends_reached(problem, fit(problem, far, iterations=0))[0]
     both = fit(problem, [Payload.of(mass=-40.0), Payload.of(mass=-30.0)], iterations=0)  # together less than nothing
     assert all(ends_reached(problem, both))
+    # friction that has warmed up before it is seen is a level of friction
+    warm = find_effect("viscous_warmup")
+    there = [fit(problem, [warm.of(Port.TABLE, share=0.1, time_constant=tau)], iterations=0) for tau in (0.1, 5.0)]
+    assert [bool(*ends_reached(problem, one)) for one in there] == [True, False]
 
 
 def test_fit_of_a_torque_of_the_other_sign_leaves_a_mass(rigid: Plant) -> None:

@@ -14,14 +14,15 @@ from math import log
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import fitted_together, given_back, said_by_effects
+from feeddrive.diagnosis.calibration.beyond import given_back, said_by_effects
+from feeddrive.diagnosis.calibration.together import fitted_together
 from feeddrive.diagnosis.certainty.certainty_result import Ambiguity
 from feeddrive.diagnosis.certainty.imitations import imitations_of
 from feeddrive.diagnosis.certainty.rival_odds import Residuals, odds_and_distance
 from feeddrive.diagnosis.certainty.same_by_law import twins_of
 from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.finding.search import Search
-from feeddrive.diagnosis.finding.sets import odds_of_members
+from feeddrive.diagnosis.finding.sets import odds_of_member
 from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
@@ -230,25 +231,29 @@ def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect
 
     Where one of them says that a declared value is other, what was named is one of the fitted values again, and what
     the rival is about none: beside each, all others are free within their tolerances. A rival that brings nothing
-    beside that value is none.
+    beside that value is none. Most bring nothing, and that shows after the first pass.
     """
     effects, problem, named = [*found.fit.effects], found.problem, found.fit.effects[place]
     effects[place] = rival
     try:
         stated, said = said_by_effects(problem, effects)
         freed = given_back(stated, named)
+        beside_value = _keys(freed) != _keys(stated)
         if _keys(freed) != _keys(problem):
-            problem, effects = fitted_together(freed, said, PASSES)
+            problem, effects = fitted_together(freed, said, 1)
+            if beside_value and _is_idle(problem, fit(problem, effects, iterations=0), place):
+                return None
+            problem, effects = fitted_together(problem, effects, PASSES - 1)
         problem = regained(problem, effects)
         swapped = there = fit(problem, effects, iterations=ITERATIONS)
+        if beside_value and _is_idle(problem, swapped, place):
+            return None
         beyond = 0.0
         if not same_samples(problem, found.problem):  # without the free play of what was taken
             there = fit(commonly_predicted(problem, found.problem), swapped.effects, iterations=ITERATIONS)
             level = min(float(mine.fitted @ mine.fitted), there.squared_error) / max(len(mine.fitted), 1)
             beyond = excess_beyond(Standing(problem, swapped), Standing(found.problem, found.fit), level)
         its = Residuals.of(problem, there, [(j.with_effects(problem, there.effects), j) for j in judged])
-        if _keys(freed) != _keys(stated) and _is_idle(problem, swapped, place):
-            return None
     except InputError:
         return None
     if not np.all(np.isfinite(its.fitted)):
@@ -260,7 +265,7 @@ def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect
 
 def _is_idle(problem: Problem, swapped: Fit, place: int) -> bool:
     """Whether a rival says nothing beside a declared value that is free again: it is the value that does as well."""
-    return odds_of_members(problem, swapped, len(problem.predictor.candidates))[place] <= 0
+    return odds_of_member(problem, swapped, place, len(problem.predictor.candidates)) <= 0
 
 
 def _keys(problem: Problem) -> tuple[str, ...]:

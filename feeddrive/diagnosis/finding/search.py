@@ -23,6 +23,7 @@ from feeddrive.diagnosis.finding.refitting import (
     at_rest,
     balanced,
     begun_as_declared,
+    in_steps_told,
     refitted,
     where_friction_brakes,
     with_scale_beyond,
@@ -130,7 +131,7 @@ def search(
         names = asked.taken.names if asked.taken is not None else []
         trials += [_trial(number, attempt, attempt.name in names) for attempt in rounds[-1]]
         if after is not None:
-            problem, found = after
+            problem, found = in_steps_told(*after)
             progress(f"found so far: {', '.join(effect.name for effect in found.effects)}")
             if _members(found) not in met:
                 met.add(_members(found))
@@ -183,7 +184,23 @@ def _of_no_name(problem: Problem, found: Fit, asked: _Asked) -> tuple[Problem, F
     if likelier_map and (taken is None or log_odds_of_map(taken.problem, taken.fit, count) > 0):
         opened = replace(problem, evidence=tuple(e.with_map(True) for e in problem.evidence))
         return opened, fit(opened, found.effects)
-    return None if taken is None else _of_another_form(taken, count)
+    return None if taken is None else _of_its_own_form(problem, found, taken, count) or _of_another_form(taken, count)
+
+
+def _of_its_own_form(problem: Problem, found: Fit, taken: Taken, count: int) -> tuple[Problem, Fit] | None:
+    """A set beside the curve of one of its laws, where a likelier set lacks such a law and the curve is likelier still.
+
+    What another form of a law leaves beside it is smaller once two others share what the law takes. The law and its
+    curve must leave what counts as noise, as beside another name.
+    """
+    stays = _members(taken.fit)
+    if not has_curve([effect for effect in found.effects if _member(effect) not in stays]):
+        return None
+    odds, opened = likeliest_curve(problem, found, count)
+    if odds <= taken.odds:
+        return None
+    there = fit(opened, found.effects, iterations=JOINT_ITERATIONS)
+    return (opened, there) if _level(opened, there) * LEVEL**2 < 1 else None
 
 
 def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
@@ -240,7 +257,8 @@ def _refitted_with(asked: _Asked, found: Fit) -> tuple[Problem, Fit] | None:
 
 def _ended(problem: Problem, found: Fit) -> tuple[Problem, Fit, list[Effect]]:
     """The set that is left at the end, all that is left counting again; and effects too small to be reported."""
-    problem, found = where_friction_brakes(*at_rest(*refitted(problem, fit(problem, found.effects))))
+    there = in_steps_told(*refitted(problem, fit(problem, found.effects)))
+    problem, found = where_friction_brakes(*at_rest(*there))
     closed = with_curves_of(problem, ())  # names are weighed, and rivals tried, against all that is left
     if closed is not problem:
         problem, found = closed, fit(closed, found.effects, iterations=JOINT_ITERATIONS)
@@ -254,7 +272,12 @@ def _ended(problem: Problem, found: Fit) -> tuple[Problem, Fit, list[Effect]]:
 
 def _members(found: Fit) -> tuple[tuple[str, str, str], ...]:
     """Names of a set, and where they act."""
-    return tuple(sorted((effect.name, str(effect.port), effect.place) for effect in found.effects))
+    return tuple(sorted(map(_member, found.effects)))
+
+
+def _member(effect: Effect) -> tuple[str, str, str]:
+    """Name of an effect, and where it acts."""
+    return effect.name, str(effect.port), effect.place
 
 
 def _without(found: Fit, gone: list[Effect]) -> list[Effect]:

@@ -44,13 +44,11 @@ from feeddrive.typing import FloatArray, IntegerArray
 BEAM = 12
 """Sets from which the next move is tried; those beyond are hundreds of nats behind where anything is decided."""
 
-
 ITERATIONS = 6
 """Steps of a fit without one member."""
 
 SURE = 20.0
 """Logarithm of the odds, as slopes tell them, from which a member is not asked again with the others refitted."""
-
 
 TINY = 1e-300
 """In place of no variance at all."""
@@ -135,16 +133,18 @@ def members_weighed(problem: Problem, found: Fit, count: int) -> tuple[Neighbour
         count: candidates that were tried.
     """
     columns = _Columns(problem, found, (), count)
-    result = []
-    for place in range(len(found.effects)):
-        other = _that_predicts_more(problem, found, place)
-        if other is None:
-            result.append(columns.weighed_closely(columns.weighed((place,), ())))
-        else:
-            gain = odds_between(Standing(problem, found), other, count)
-            price = log_prior_of_size(len(found.effects) - 1, count) - log_prior_of_size(len(found.effects), count)
-            result.append(Neighbour((place,), (), gain, min(gain - price, 0.0), other.fit.effects))
-    return tuple(result)
+    return tuple(_without(columns, place) for place in range(len(found.effects)))
+
+
+def _without(columns: _Columns, place: int) -> Neighbour:
+    """A set without one member, as `members_weighed`."""
+    problem, found, count = columns.problem, columns.found, columns.count
+    other = _that_predicts_more(problem, found, place)
+    if other is None:
+        return columns.weighed_closely(columns.weighed((place,), ()))
+    gain = odds_between(Standing(problem, found), other, count)
+    price = log_prior_of_size(len(found.effects) - 1, count) - log_prior_of_size(len(found.effects), count)
+    return Neighbour((place,), (), gain, min(gain - price, 0.0), other.fit.effects)
 
 
 def _that_predicts_more(problem: Problem, found: Fit, place: int) -> Standing | None:
@@ -159,6 +159,11 @@ def _that_predicts_more(problem: Problem, found: Fit, place: int) -> Standing | 
 def odds_of_members(problem: Problem, found: Fit, count: int) -> tuple[float, ...]:
     """Logarithm of the odds for each member of a set against the set without it; arguments as `members_weighed`."""
     return tuple(-one.gain for one in members_weighed(problem, found, count))
+
+
+def odds_of_member(problem: Problem, found: Fit, place: int, count: int) -> float:
+    """Logarithm of the odds for one member; other arguments as `members_weighed`."""
+    return -_without(_Columns(problem, found, (), count), place).gain
 
 
 def needed_members(problem: Problem, found: Fit, may_go: Callable[[Effect], bool]) -> Standing:

@@ -14,7 +14,8 @@ from collections.abc import Container, Sequence
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.calibrate import ENOUGH, at_declared, moved, recalibrated
+from feeddrive.diagnosis.calibration.calibrate import at_declared, moved, recalibrated
+from feeddrive.diagnosis.calibration.value_slopes import ENOUGH
 from feeddrive.diagnosis.certainty.imitations import imitations_of
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, with_predictable
 from feeddrive.diagnosis.finding.scene import scene_of

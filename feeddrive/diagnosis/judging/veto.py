@@ -36,6 +36,7 @@ from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judge
 from feeddrive.diagnosis.likelihood.coordinates import (
     LEFT,
     absent_coordinates,
+    at_its_limit,
     coordinate_ends,
     read_coordinates,
     write_coordinates,
@@ -48,6 +49,7 @@ from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.recordings.compared import judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, is_shift, without_shifts
 from feeddrive.effects.base import ChainEffect, Effect, FrictionEffect
+from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray, IntegerArray
 from feeddrive.units.quantity import format_quantity, percent
 
@@ -156,7 +158,10 @@ def _share(found: Search, judged: Sequence[Judged], place: int) -> Share:
     columns = slice(sum(counts[:place]), sum(counts[: place + 1]))
     step = linear_step(np.delete(found.fit.jacobian, columns, axis=1), problem.residual(rest))
     moved = write_coordinates(rest, problem.plant, np.delete(found.fit.coordinates, columns) + step)
-    share = share_beyond(problem, judged, moved)
+    try:
+        share = share_beyond(problem, judged, moved)
+    except InputError:  # one step may lead to a plant that cannot be simulated
+        return share_of(problem, judged, effects, place)
     clear = share.comparison.gain > max(CLEARLY_NEEDED, SURE * share.comparison.standard_error)
     return share if clear else share_of(problem, judged, effects, place)
 
@@ -205,6 +210,7 @@ def ends_reached(problem: Problem, fitted: Fit) -> list[str]:
     """Per effect, a sentence on the first value at an end of what is physical; empty where there is none.
 
     Where the end is the absent effect, or a default, it is a value as any other: a damper of nothing, a share of none.
+    A value that is known to a factor has no such end: there the law is another one (`at_its_limit`).
     """
     result = []
     too_little = _leaves_too_little(problem, fitted.effects)
@@ -220,6 +226,7 @@ def ends_reached(problem: Problem, fitted: Fit) -> list[str]:
         near = np.minimum(np.abs(vector - low), np.abs(high - vector)) < 1e-4 * np.maximum(1.0, np.abs(vector))
         plain = np.isclose(vector, absent) | (np.isclose(vector, defaults) & np.isnan(absent))
         ended = topped or np.any(near & ~plain) or (too_little and isinstance(effect, ChainEffect))
+        ended = ended or at_its_limit(effect)
         result.append(_end_sentence(effect) if ended and not is_shift(effect) else "")
     return result
 

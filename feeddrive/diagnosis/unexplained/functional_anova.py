@@ -22,6 +22,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from feeddrive.diagnosis.finding.remembered import Remembered
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out, prior_information
 from feeddrive.diagnosis.likelihood.folds import FOLDS
 from feeddrive.diagnosis.likelihood.tolerances import SURE
@@ -40,6 +41,10 @@ COUNT = 2.0
 
 RIDGE = 1e-8
 """Ridge for columns of length one: settles tables whose hats add up to another column, and moves no value."""
+
+
+COLUMNS = 32_000_000
+"""Bytes of columns that are kept: those of the few terms chosen, beside which each of hundreds is weighed."""
 
 
 @dataclass(frozen=True)
@@ -185,6 +190,7 @@ class Sums:
         self._moments: dict[Term | None, FloatArray] = {}
         self._products: dict[tuple[Term | None, Term | None], FloatArray] = {}
         self._left: dict[tuple[Term, ...], FloatArray] = {}
+        self._latest: Remembered[FloatArray] = Remembered(lambda columns: columns.nbytes, COLUMNS)
         self._take(None)
         self._squares = np.array([float(np.sum(self._residual[fold] ** 2)) for fold in self._folds])
 
@@ -207,9 +213,8 @@ class Sums:
         self._products[term, term] = np.stack([ordered[fold].T @ ordered[fold] for fold in self._folds])
 
     def _ordered(self, term: Term | None) -> FloatArray:
-        """Columns of length one, fold after fold."""
-        ordered: FloatArray = self._raw(term)[self._order] / self._scale[term]
-        return ordered
+        """Columns of length one, fold after fold; those of the latest terms are kept."""
+        return self._latest.found(None, term, lambda: self._raw(term)[self._order] / self._scale[term])
 
     def _product(self, one: Term | None, other: Term | None) -> FloatArray:
         """Columns of one term times those of another, (folds, k, l)."""
