@@ -12,18 +12,21 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from feeddrive.diagnosis.calibration.calibration import whitener
 from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.finding.sets import Neighbour, _not_told, neighbours, odds_of_members
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
 from feeddrive.diagnosis.likelihood.set_evidence import (
     Standing,
+    declared_cost,
     declining,
     gain_between,
     log_odds,
     log_prior_of_size,
     log_volume,
     odds_between,
+    variance_along,
 )
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND
 from feeddrive.diagnosis.numbers.number_rows import MeasuredRows
@@ -59,7 +62,7 @@ def problem(columns: dict[str, FloatArray], measured: FloatArray) -> Any:
     predictor = SimpleNamespace(of_motion=True)
     return SimpleNamespace(
         evidence=(evidence,), plant=PLANT, residual=residual, numbers=MeasuredRows(), predictor=predictor,
-        by_channel=by_channel,
+        by_channel=by_channel, whitener=None,
     )  # fmt: skip
 
 
@@ -158,6 +161,27 @@ def test_effect_of_eight_deviations_is_in_and_one_of_two_is_not() -> None:
         assert (odds_of_members(problem(columns, measured), found, COUNT)[0] > 0) is wanted
 
 
+def test_declared_values_cost_their_deviations_whatever_the_noise() -> None:
+    """One set leaves a value three deviations off, the other none: 4.5 nats, also where a row is worth little."""
+    generator = np.random.default_rng(11)
+    slopes, noise = 50.0 * generator.standard_normal((ROWS, 1)) / np.sqrt(ROWS), generator.standard_normal(ROWS)
+    for level in (1.0, 5.0):
+        columns, left = drawn(11)[0], level * noise
+        made = problem(columns, left)
+        made.whitener = whitener(slopes, np.zeros(1), level**2)
+        residual = left - slopes @ np.linalg.lstsq(slopes, left, rcond=None)[0]
+        # most likely values: a row that asks for 3 / s of a deviation more than the prior leaves of it
+        asked = residual + slopes[:, 0] * 3.0 * (50.0**2 + level**2) / 50.0**2
+        sets = [Fit((), made.whitener.applied(rows), np.zeros((ROWS, 0)), np.zeros(0)) for rows in (asked, residual)]
+        assert made.whitener.most_likely(asked)[0] == pytest.approx(3.0, rel=0.05)  # of 50 columns of chance length
+        assert declared_cost(made, sets[0].residual).nats == pytest.approx(4.5, rel=0.1)
+        assert declared_cost(made, sets[1].residual).nats == pytest.approx(0.0, abs=1e-12)
+        whole = sets[0].squared_error - sets[1].squared_error
+        of_rows = whole - declared_cost(made, sets[0].residual).square
+        variance = variance_along(made, sets[1], *sets)
+        assert log_odds(made, *sets, COUNT) == pytest.approx(4.5 + 0.5 * of_rows / variance, rel=0.1)
+
+
 def test_two_effects_that_hide_each_other_are_found_together() -> None:
     columns, measured = drawn(4, 60.0, -60.0, likeness=0.98)
     made, nothing = problem(columns, measured), fitted((), columns, measured)
@@ -230,6 +254,7 @@ class Made:
     numbers: MeasuredRows = field(default_factory=MeasuredRows)
     predictor: Any = field(default_factory=lambda: SimpleNamespace(chance=0.0, of_motion=True))
     calibration: None = None
+    whitener: None = None
     by_channel: Callable[[FloatArray], list[dict[str, FloatArray]]] = by_channel
 
 

@@ -8,6 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.diagnosis.finding.scene import Candidate, Scene
+from feeddrive.diagnosis.likelihood.coordinates import (
+    absent_coordinates,
+    coordinate_ends,
+    read_coordinates,
+    write_coordinates,
+)
 from feeddrive.diagnosis.likelihood.cross_validation import (
     LEAST_GAIN,
     Comparison,
@@ -15,7 +21,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
     least_gain,
     left_out_residual,
 )
-from feeddrive.diagnosis.likelihood.fit import Fit, fit, linear_step
+from feeddrive.diagnosis.likelihood.fit import Fit, error_of, fit, linear_step
 from feeddrive.diagnosis.likelihood.folds import FOLDS, block_numbers
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.predictability import has_play
@@ -104,6 +110,7 @@ def _best_start(scene: Scene, candidate: Candidate, starts: Sequence[Effect]) ->
     if len(starts) > 1:
         nothing = problem.residual(before)
         start = min(starts, key=lambda one: _left_by(nothing, problem.residual((*before, one)), candidate.scanned))
+        start = start if candidate.scanned else _sized(problem, before, start, nothing)
     if candidate.scanned:
         result = fit(problem, (*before, start), free, SCANNED_ITERATIONS)
     else:
@@ -120,6 +127,24 @@ def _left_by(nothing: FloatArray, start: FloatArray, as_it_is: bool) -> float:
     if as_it_is or square == 0:
         return float(start @ start)
     return float(nothing @ nothing) - float(taken @ nothing) ** 2 / square
+
+
+def _sized(problem: Problem, before: Sequence[Effect], start: Effect, nothing: FloatArray) -> Effect:
+    """A start of the size that suits best, which its own series tells; as it is where that leaves no less.
+
+    A step leads along slopes at the start: those of a velocity or a width are as large as the size that they are of,
+    and at many times the true one lead away.
+    """
+    having = problem.residual((*before, start))
+    taken = nothing - having
+    square = float(taken @ taken)
+    if not 0 < square < np.inf:
+        return start
+    (absent, _), there = absent_coordinates([start], problem.plant), read_coordinates([start], problem.plant)
+    moved = np.where(np.isnan(absent), there, absent + float(taken @ nothing) / square * (there - absent))
+    (other,) = write_coordinates([start], problem.plant, np.clip(moved, *coordinate_ends([start], problem.plant)))
+    able = problem.possible((*before, other))
+    return other if able and error_of(problem, (*before, other)) < float(having @ having) else start
 
 
 def refined(scene: Scene, attempt: Attempt) -> Attempt | None:

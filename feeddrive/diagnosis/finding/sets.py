@@ -239,6 +239,13 @@ class _Columns:
         measured = self.columns[len(self.columns) - len(problem.numbers) :]
         self.scatter = score_covariance(problem.evidence, rows, found.residual, self.columns)
         self.scatter += problem.numbers.weight**2 * measured.T @ measured
+        # what declared values cost: the square of these, (k,), less those that a set takes, over λ
+        known = problem.whitener
+        share = (
+            np.zeros((0, len(found.residual))) if known is None else known.basis.T * np.sqrt(1 - known.kept**2)[:, None]
+        )
+        self.cost, self.cost_taken = share @ found.residual, share @ self.columns
+        self.unit = 1.0 if known is None else known.variance
 
     def _taken(
         self, dropped: Sequence[int], added: Sequence[int]
@@ -280,18 +287,20 @@ class _Columns:
         if square <= 0 or less <= 0:
             return Neighbour(dropped, added, -np.inf)
         variance = float(taken @ self.scatter @ taken) / square * less / before + DISCREPANCY * less
-        gain = self._gain(excess, variance, free, effects, coordinates)
-        return Neighbour(dropped, added, gain, 0.5 * excess / max(variance, TINY))
+        after = self.cost - self.cost_taken @ taken
+        cheaper = float(self.cost @ self.cost - after @ after)
+        speaks = 0.5 * (excess - cheaper) / max(variance, TINY) + 0.5 * cheaper / self.unit
+        return Neighbour(dropped, added, self._gain(speaks, variance, free, effects, coordinates), speaks)
 
     def _gain(
-        self, excess: float, variance: float, free: IntegerArray, effects: Sequence[Effect], coordinates: FloatArray
+        self, speaks: float, variance: float, free: IntegerArray, effects: Sequence[Effect], coordinates: FloatArray
     ) -> float:
         plant, found = self.problem.plant, self.found
         mine = slice(0, found.jacobian.shape[1])
         after = log_volume(effects, plant, coordinates, self.products[np.ix_(free, free)], variance)
         before = log_volume(found.effects, plant, found.coordinates, self.products[mine, mine], variance)
         sizes = [log_prior_of_size(len(some), self.count) for some in (effects, found.effects)]
-        return 0.5 * excess / max(variance, TINY) + after - before + sizes[0] - sizes[1]
+        return speaks + after - before + sizes[0] - sizes[1]
 
     def weighed_closely(self, one: Neighbour) -> Neighbour:
         """The set by the colour of what it leaves itself, where that is less."""

@@ -32,6 +32,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import betaln
@@ -159,7 +160,9 @@ def prior_middle(effects: Sequence[Effect], plant: Plant) -> FloatArray:
     return np.where(np.isnan(absent) & np.array(placed, dtype=bool), 0.0, absent)
 
 
-def log_odds(problem: Problem, first: Fit, second: Fit, count: int, beyond: float = 0.0) -> float:
+def log_odds(
+    problem: Problem, first: Fit, second: Fit, count: int, beyond: float = 0.0, of_first: Problem | None = None
+) -> float:
     """Logarithm of the odds for the second of two sets, all of whose effects are fitted to the same samples.
 
     Args:
@@ -168,6 +171,7 @@ def log_odds(problem: Problem, first: Fit, second: Fit, count: int, beyond: floa
         second: another.
         count: candidates and starts that were tried.
         beyond: squared error of the first less that of the second on samples that one of them alone predicts.
+        of_first: with the declared values that the first stands beside, where those are others.
     """
     excess = first.squared_error - second.squared_error + beyond
     if not np.isfinite(excess):
@@ -178,7 +182,29 @@ def log_odds(problem: Problem, first: Fit, second: Fit, count: int, beyond: floa
         + log_prior_of_size(len(one.effects), count)
         for one in (first, second)
     ]
-    return 0.5 * excess / variance + sets[1] - sets[0]
+    costs = declared_cost(of_first or problem, first.residual), declared_cost(problem, second.residual)
+    excess -= costs[0].square - costs[1].square
+    return 0.5 * excess / variance + costs[0].nats - costs[1].nats + sets[1] - sets[0]
+
+
+class DeclaredCost(NamedTuple):
+    """What declared values cost that stand off what is declared: in the whitened square, and in nats."""
+
+    square: float
+    nats: float
+
+
+def declared_cost(problem: Problem, residual: FloatArray) -> DeclaredCost:
+    """Cost of the declared values as they are most likely with a residual, whitened, (m,): λ c'c of its square.
+
+    Their tolerances are known. No noise of the recordings, and no error that a law may have, makes a value that is off
+    by many of its deviations any likelier: c'c / 2 is what it costs.
+    """
+    whitened = problem.whitener
+    if whitened is None:
+        return DeclaredCost(0.0, 0.0)
+    square = float(np.sum((1 - whitened.kept**2) * (whitened.basis.T @ residual) ** 2))
+    return DeclaredCost(square, 0.5 * square / whitened.variance)
 
 
 def variance_along(problem: Problem, left: Fit, first: Fit, second: Fit) -> float:
@@ -217,11 +243,12 @@ def odds_between(first: Standing, second: Standing, count: int) -> float:
         count: candidates and starts that were tried.
     """
     if same_samples(first.problem, second.problem):
-        return log_odds(second.problem, first.fit, second.fit, count)
+        return log_odds(second.problem, first.fit, second.fit, count, of_first=first.problem)
     common = commonly_predicted(second.problem, first.problem)
+    own = replace(first.problem, evidence=common.evidence)
     try:
-        there = fitted_there(first, replace(first.problem, evidence=common.evidence)), fitted_there(second, common)
-        return log_odds(common, *there, count, excess_beyond(first, second, _level(*there)))
+        there = fitted_there(first, own), fitted_there(second, common)
+        return log_odds(common, *there, count, excess_beyond(first, second, _level(*there)), own)
     except InputError:  # the first cannot be simulated with what suits the common samples best
         return math.inf
 

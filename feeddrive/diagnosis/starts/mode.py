@@ -8,9 +8,15 @@ its motion shows that in torque and position:
 with the chain's own responses G to a force on the table. For a few w and zeta the mass follows by least squares, each
 channel weighted by its noise and each frequency by what the encoder tells of it. Mass and spectrum alone say where the
 resonance is, also between lines of motion.
+
+Declared values that were fitted without the mode have taken what they can of it, the payload that it is below its
+resonance above all. So the mass is fitted beside their slopes, under the same tolerances (`calibration`): alone, the
+spectrum of what they have left is none of a mode.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import minimize
@@ -89,6 +95,7 @@ class _Spectra:
         edge: of the band [Hz].
         left: what is left of each channel, shape (channels, n).
         unit: what a payload of one kilogram would leave, shape (channels, n).
+        values: what is left, with the declared values that may stand for it.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -107,14 +114,70 @@ class _Spectra:
         responses = _responses(scene, self.frequency)
         per_force = np.array([responses[name] for name in evidence.channels])
         self.unit = -per_force * acceleration / noise
+        self.values = _beside_values(scene, window, kept, noise, self.left)
 
     def fitted(self, transmissibility: ComplexArray | FloatArray) -> tuple[float, float]:
         """Share of the weighted square that the best mass takes away, and that mass [kg]."""
-        shape = self.unit * transmissibility
-        energy = float(np.sum(np.abs(shape) ** 2))
-        product = float(np.sum((np.conj(shape) * self.left).real))
-        total = float(np.sum(np.abs(self.left) ** 2))
+        shape = _rows(self.unit * transmissibility)
+        along = self.values.basis.T @ shape
+        energy = float(shape @ shape - along @ along)
+        product = float(shape @ self.values.left - along @ self.values.taken)
+        total = self.values.total
         return (product**2 / (energy * total), product / energy) if energy > 0 and total > 0 else (0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class _BesideValues:
+    """What is left, as spectra, with the declared values that may stand for it within their tolerances.
+
+    Attributes:
+        left: real and imaginary parts, (m,).
+        basis: part in these rows of what is orthonormal in them and in the tolerances, (m, k).
+        taken: of the spectra that are left and of the tolerances along it, (k,).
+        total: weighted square of both that no declared value takes.
+    """
+
+    left: FloatArray
+    basis: FloatArray
+    taken: FloatArray
+    total: float
+
+
+def _beside_values(
+    scene: Scene, window: FloatArray, kept: BoolArray, noise: FloatArray, left: ComplexArray
+) -> _BesideValues:
+    """The spectra that are left, (channels, n), of the longest recording, with its declared values.
+
+    Args:
+        scene: what is left.
+        window: weights of its samples, (rows,).
+        kept: frequencies in the band.
+        noise: of channels and frequencies, (channels, n) or (channels, 1).
+        left: over the noise.
+    """
+    evidence, known, rows = scene.problem.evidence[scene.longest], scene.problem.calibration, _rows(left)
+    if known is None or not known.values:
+        return _BesideValues(rows, np.zeros((len(rows), 0)), np.zeros(0), float(rows @ rows))
+    slopes = known.slopes[evidence.recording]
+    columns = np.column_stack(
+        [
+            _rows(np.array([np.fft.rfft(window * slopes[n][:, i])[kept] for n in evidence.channels]) / noise)
+            for i in range(len(known.values))
+        ]
+    )
+    # a sum over frequencies is half of the samples' number times that over samples, of which fits take a few
+    tolerance = np.sqrt(known.variance * evidence.thinning * len(window) / 2)
+    basis, _ = np.linalg.qr(np.vstack([columns, tolerance * np.eye(len(known.values))]))
+    whole = np.concatenate([rows, -tolerance * known.coordinates])
+    taken = basis.T @ whole
+    return _BesideValues(rows, basis[: len(rows)], taken, float(whole @ whole - taken @ taken))
+
+
+def _rows(spectra: ComplexArray | FloatArray) -> FloatArray:
+    """Real and imaginary parts of spectra, (m,)."""
+    flat = np.asarray(spectra).ravel()
+    rows: FloatArray = np.concatenate([flat.real, flat.imag])
+    return rows
 
 
 def _faded(rows: BoolArray, sample_time: float) -> FloatArray:

@@ -64,9 +64,12 @@ def deviation(scene: Scene) -> list[list[Effect]]:
 
 
 def stribeck(scene: Scene) -> list[list[Effect]]:
-    """A typical size at a few velocities of the recording."""
+    """A tenth of the declared level at a few velocities of the recording.
+
+    More than the level is no small change of the motion: a series of that size tells nothing of one that is physical.
+    """
     fastest = max(float(np.abs(run.table_velocity).max()) for run in scene.runs)
-    size = Stribeck.parameter("delta_force").size
+    size = 0.1 * declared_level(scene.plant, Port.TABLE) or Stribeck.parameter("delta_force").size
     return [[Stribeck.of(delta_force=size, velocity=fastest * share) for share in (0.005, 0.015, 0.05, 0.15, 0.4)]]
 
 
