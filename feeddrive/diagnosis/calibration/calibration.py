@@ -76,6 +76,13 @@ class Whitener:
         result: FloatArray = rows - self.basis @ ((1 - self.kept) * (self.basis.T @ rows))
         return result
 
+    def lengths(self, applied: FloatArray) -> FloatArray:
+        """Lengths, (n,), that columns had before W was applied to them, (m, n)."""
+        along = self.basis.T @ applied
+        rest = np.sum(applied**2, axis=0) - np.sum(along**2, axis=0)
+        found: FloatArray = np.sqrt(np.maximum(rest, 0.0) + np.sum((along / self.kept[:, None]) ** 2, axis=0))
+        return found
+
     def most_likely(self, residual: FloatArray) -> FloatArray:
         """ĉ for y - f, (m,)."""
         normal: FloatArray = self.columns.T @ self.columns + self.variance * np.eye(self.columns.shape[1])

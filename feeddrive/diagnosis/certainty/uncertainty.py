@@ -25,14 +25,23 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtri, stdtrit
 
+from feeddrive.diagnosis.calibration.value_slopes import SHORT
 from feeddrive.diagnosis.certainty.information import inverse_information
 from feeddrive.diagnosis.certainty.noise_colour import fitted_away, score_covariance, spectral_freedom
-from feeddrive.diagnosis.likelihood.coordinates import LOGARITHMIC, spread_to_values, write_coordinates
+from feeddrive.diagnosis.likelihood.coordinates import (
+    LOGARITHMIC,
+    coordinate_ends,
+    longest_steps,
+    read_coordinates,
+    spread_to_values,
+    write_coordinates,
+)
 from feeddrive.diagnosis.likelihood.cross_validation import model_error_rows
 from feeddrive.diagnosis.likelihood.fit import Fit
 from feeddrive.diagnosis.likelihood.folds import blocks_in_time
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.slopes import difference_of
+from feeddrive.diagnosis.likelihood.slopes import COARSE, difference_of
+from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray, IntegerArray
 
@@ -106,17 +115,35 @@ def score_variances(problem: Problem, residual: FloatArray, columns: FloatArray)
 
 
 def slopes(problem: Problem, fitted: Fit) -> FloatArray:
-    """The fit's Jacobian; a coordinate that stands at the upper end of its range is moved downwards. Shape (m, k)."""
-    still = np.flatnonzero(~fitted.jacobian.any(axis=0))
-    if not len(still):
-        return fitted.jacobian
+    """Slopes of the prediction where a fit ended, (m, k).
+
+    Those of the fit are of steps so short that the solver's own show in them, by up to a hundredth, and may be of
+    where it came from. A mass is told by a hundredth of what it does where friction, stiffness and the torque constant
+    may all be other with it, and what is wrong in its slope by as much is taken for what tells it. So a coordinate is
+    moved until all rows together move by `SHORT` deviations, as a declared value is; one at the upper end of its range
+    downwards.
+    """
     jacobian, base = fitted.jacobian.copy(), problem.predicted(fitted.effects)
-    for i in still:
-        step = np.zeros(jacobian.shape[1])
-        step[i] = -difference_of(problem)
-        moved = write_coordinates(fitted.effects, problem.plant, fitted.coordinates + step)
-        jacobian[:, i] = (base - problem.predicted(moved)) / difference_of(problem)
+    here, (_, high) = read_coordinates(fitted.effects, problem.plant), coordinate_ends(fitted.effects, problem.plant)
+    for i, step in enumerate(_steps(problem, fitted)):
+        if step > 0:
+            there = here.copy()
+            there[i] += step if there[i] + step <= high[i] else -step
+            moved = problem.predicted(write_coordinates(fitted.effects, problem.plant, there))
+            if np.all(np.isfinite(moved)):
+                jacobian[:, i] = (moved - base) / (there[i] - here[i])
     return jacobian
+
+
+def _steps(problem: Problem, fitted: Fit) -> FloatArray:
+    """Steps of the coordinates from which their slopes are taken anew, (k,); 0 where the fit's slope is kept."""
+    short, still = difference_of(problem), ~fitted.jacobian.any(axis=0)
+    known = problem.whitener
+    sizes = np.linalg.norm(fitted.jacobian, axis=0) if known is None else known.lengths(fitted.jacobian)
+    if short == COARSE or not problem.predictor.of_motion or has_play(fitted.effects):
+        return np.where(still, short, 0.0)
+    longest = np.maximum(longest_steps(fitted.effects, problem.plant), short)
+    return np.where(still, short, np.clip(SHORT / np.where(still, 1.0, sizes), short, longest))
 
 
 def _left(missed: FloatArray, whole: FloatArray) -> FloatArray:
