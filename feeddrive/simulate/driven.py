@@ -24,7 +24,7 @@ from feeddrive.parts.life.consumed_life import ConsumedLife, consumed_life, rigi
 from feeddrive.plant.analysis.rated_life import preload_of
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.structure import parameter_values
-from feeddrive.simulate.driven_machine import driven_machine
+from feeddrive.simulate.driven_machine import driven_machine, riding_on_flank
 from feeddrive.simulate.row_steps import at_rate, at_rows, at_steps, on_grid, step_count
 from feeddrive.typing import FloatArray, IntegerArray
 
@@ -205,7 +205,7 @@ def simulate_steps(
     if motion.every > 1:
         rests = rests and rests.at_steps(motion.every)
         return simulate_steps(plant, motion.steps, tolerance / motion.every, rests)
-    machine, outputs, beginning, riding = driven_machine(plant)
+    machine, outputs, beginning = driven_machine(plant)
     values = np.array(parameter_values(plant))
     states = np.zeros(0)
     if machine.program.step.layout.coordinates:
@@ -226,6 +226,7 @@ def simulate_steps(
             at = sample * motion.substeps
             given = motion.angle[at], motion.speed[at], motion.acceleration[at], motion.time[at]
             rigid = np.array(beginning(*given[:2], values)).ravel()
+            riding = riding_on_flank(plant, machine.program.step.layout)
             place = _on_flank(place, rigid, anew[sample], riding, (*given, values))
             shown[:, sample] = np.array(outputs(place.memory, *given, values)).ravel()
             torque[at] = shown[TORQUE, sample]
@@ -266,7 +267,7 @@ def _on_flank(
         place: where the run is; kept where the load does not come to rest on that flank.
         rigid: coordinates and rates without stretch, (2 n,).
         stretch: of the nut to begin with [m].
-        riding: from `_riding`.
+        riding: from `riding_on_flank`.
         given: of the motor angle, speed and acceleration, time, parameters.
     """
     memory, free = place.memory.copy(), len(rigid) // 2

@@ -1,4 +1,4 @@
-"""Equations of a load that a given motor motion drives: what runs them, their outputs and their start."""
+"""Equations of a load that a given motor motion drives: what runs them, their outputs, their start, a flank."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ PASSES = 3
 
 
 @per_structure
-def driven_machine(plant: Plant) -> tuple[Machine, ca.Function, ca.Function, ca.Function]:
-    """What runs a structure, its outputs, its start, and what keeps its load from riding with the motor."""
+def driven_machine(plant: Plant) -> tuple[Machine, ca.Function, ca.Function]:
+    """What runs a structure, its outputs and its start."""
     step = driven_step(plant)
     outputs = _outputs(plant, step.layout)
     memory, own, fed, settings = (ca.SX.sym(*a) for a in (("m", step.layout.memory), ("o", 0), ("f", 6), ("s", 1)))
@@ -32,12 +32,7 @@ def driven_machine(plant: Plant) -> tuple[Machine, ca.Function, ca.Function, ca.
     read = outputs(memory, fed[2], fed[3], fed[4], fed[5] + settings[0], values)
     before = ca.Function("feeddrive_before", arguments, [own, fed[:4], ca.SX.zeros(0, 1)])
     after = ca.Function("feeddrive_after", arguments, [read])
-    return (
-        machine_of(Program(step, before, after, 1, plant.chain.varies)),
-        outputs,
-        _start(plant),
-        _riding(plant, step.layout),
-    )
+    return machine_of(Program(step, before, after, 1, plant.chain.varies)), outputs, _start(plant)
 
 
 def _start(plant: Plant) -> ca.Function:
@@ -84,8 +79,11 @@ def _outputs(plant: Plant, layout: Layout) -> ca.Function:
     return ca.Function("outputs", [*given, symbols.vector], [result])
 
 
-def _riding(plant: Plant, layout: Layout) -> ca.Function:
+@per_structure
+def riding_on_flank(plant: Plant, layout: Layout) -> ca.Function:
     """What keeps the load from moving as rigidly as its rates say, for a search for its coordinates.
+
+    It takes as long to make as the outputs, and few structures have a play to rest on a flank of.
 
     (memory, theta, theta', theta'', t, parameters) -> (rows of M q'' + C q' + K q - f without the motor's, how they
     change with the free coordinates, the table over these).

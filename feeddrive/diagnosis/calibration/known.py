@@ -25,7 +25,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from scipy.optimize import brentq, lsq_linear
@@ -117,20 +117,22 @@ class Known:
         low, high = self.read_ends[:, others]
         least, best = _least(self.slopes, self.right_side, *_freed(self.read_ends, place))
 
-        def excess(u: float) -> float:
-            right_side = self.right_side - self.slopes[:, place] * u
-            return _least(self.slopes[:, others], right_side, low, high)[0] - least - NORMAL_95**2
+        @cache
+        def excess(step: float) -> float:
+            """As a root: chi² is a parabola between the steps at which other values come to their ends."""
+            right_side = self.right_side - self.slopes[:, place] * (best[place] + step)
+            more = _least(self.slopes[:, others], right_side, low, high)[0] - least
+            return math.sqrt(max(more, 0.0)) - NORMAL_95
 
         ends = []
         for way in (-1.0, 1.0):
-            if excess(best[place]) >= 0:  # so poorly told that not even the least is found twice
+            if excess(0.0) >= 0:  # so poorly told that not even the least is found twice
                 ends.append(best[place])
                 continue
             far = way
-            while excess(best[place] + far) < 0 and abs(far) < MOST:
+            while excess(far) < 0 and abs(far) < MOST:
                 far *= 2
-            ends.append(best[place] + (brentq(lambda step: excess(best[place] + step), 0.0, far, xtol=1e-3)
-                        if abs(far) < MOST else far))  # fmt: skip
+            ends.append(best[place] + (brentq(excess, 0.0, far, xtol=1e-3) if abs(far) < MOST else far))
         return self.c(place, ends[0]), self.c(place, ends[1])
 
     def interval_about(self, place: int, coordinate: float) -> tuple[float, float]:

@@ -135,11 +135,11 @@ def beyond_its_constant(problem: Problem, found: Fit) -> tuple[Quality, ...]:
     known = known_values(problem, found)
     if known is None:
         return ()
-    for place, one in enumerate(calibrated_list(problem, found)):
-        if one.value.key != "torque_constant":
+    for place, value in enumerate(known.values):
+        if value.key != "torque_constant":
             continue
-        if one.value.widened > 1 or known.least() - known.least(place) > SURE**2:
-            declared = one.value.declared
+        if value.widened > 1 or known.least() - known.least(place) > SURE**2:
+            one, declared = calibrated_list(problem, found)[place], value.declared
             return (scaled(declared / one.number, (declared / one.ci95[1], declared / one.ci95[0])),)
     return ()
 
