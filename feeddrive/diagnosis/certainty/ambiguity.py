@@ -21,6 +21,7 @@ from feeddrive.diagnosis.certainty.imitations import imitations_of
 from feeddrive.diagnosis.certainty.rival_odds import Residuals, odds_and_distance
 from feeddrive.diagnosis.certainty.same_by_law import twins_of
 from feeddrive.diagnosis.finding.attempt import Attempt
+from feeddrive.diagnosis.finding.elsewhere import elsewhere, where
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import odds_of_member
 from feeddrive.diagnosis.judging.judge import Judged
@@ -35,11 +36,10 @@ from feeddrive.diagnosis.likelihood.set_evidence import (
     same_samples,
 )
 from feeddrive.diagnosis.likelihood.tolerances import SURE
-from feeddrive.effects.base import Effect, number
-from feeddrive.effects.chain.stiffness_deviation import PARTS, StiffnessDeviation, parts_of
+from feeddrive.effects.base import Effect
+from feeddrive.effects.chain.stiffness_deviation import PARTS, StiffnessDeviation
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.stiffness_budget import participation
-from feeddrive.plant.plant import Plant
 from feeddrive.units.quantity import percent
 
 SAME_ERROR = 1.05
@@ -56,9 +56,6 @@ NEAR = 0.5
 
 MOST_RIVALS = 4
 """Rivals tried for one effect; each costs a joint fit."""
-
-PLACED = ("inertia_deviation", "channel_delay", "stiffness_deviation")
-"""Effects whose place is put to the question."""
 
 PASSES = 2
 """Times that a rival and declared values are fitted in turn: what a rival that is as good is behind by, two remove; of
@@ -146,40 +143,26 @@ def ambiguous_sets(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Ambigu
 
 
 def other_places(found: Search, judged: Sequence[Judged]) -> tuple[str, ...]:
-    """Sentences about effects whose place the data cannot tell: at motor or screw, which channel.
+    """Sentences about effects whose place the data cannot tell: at motor or screw, at table or screw, which channel.
 
     Args:
         found: what the search took.
         judged: recordings with the found effects in.
     """
-    placed = [(i, effect) for i, effect in enumerate(found.fit.effects) if effect.name in PLACED]
-    if not placed:
+    placed = [(i, elsewhere(effect, found.problem.plant)) for i, effect in enumerate(found.fit.effects)]
+    if not any(others for _, others in placed):
         return ()
     mine = Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
     remarks = []
-    for index, effect in placed:
-        taken = {e.place for e in found.fit.effects if e.name == effect.name}
-        tried = [
-            _in_place(found, judged, index, _elsewhere(effect, place, found.problem.plant), mine)
-            for place in _possible(effect, found)
-            if place not in taken
-        ]
-        alike = [rival.effect.place for rival in tried if rival is not None and rival.as_good]
+    for index, others in placed:
+        effect = found.fit.effects[index]
+        taken = {where(e) for e in found.fit.effects if e.name == effect.name}
+        tried = [_in_place(found, judged, index, other, mine) for other in others if where(other) not in taken]
+        alike = [where(rival.effect) for rival in tried if rival is not None and rival.as_good]
         if alike:
-            where = f"{effect.place_key} = {joined(alike)} does as well as {effect.place}"
-            remarks.append(f"{effect.name}: {where}; these recordings cannot tell{_shares(effect, alike, found)}")
+            said = f"{effect.place_key or 'port'} = {joined(alike)} does as well as {where(effect)}"
+            remarks.append(f"{effect.name}: {said}; these recordings cannot tell{_shares(effect, alike, found)}")
     return tuple(remarks)
-
-
-def _elsewhere(effect: Effect, place: str, plant: Plant) -> Effect:
-    """An effect at another place; a stiffness there begins where the table gives way as much as here."""
-    moved = type(effect).of(None, place, **effect.values)
-    if not isinstance(effect, StiffnessDeviation) or not {effect.place, place} <= set(PARTS):
-        return moved
-    here, there = (participation(plant, PARTS[part], plant.middle) for part in (effect.place, place))
-    softer = 1 + (1 / number(effect.values["factor"]) - 1) * here / there
-    ends = effect.parameter("factor")
-    return moved.with_values(factor=min(max(1 / max(softer, 1 / ends.maximum), ends.minimum), ends.maximum))
 
 
 def _shares(effect: Effect, alike: Sequence[str], found: Search) -> str:
@@ -190,13 +173,6 @@ def _shares(effect: Effect, alike: Sequence[str], found: Search) -> str:
     parts = [part for part in (effect.place, *alike) if part in PARTS]
     shares = [f"{part} {percent(participation(plant, PARTS[part], plant.middle))}" for part in parts]
     return f". Of the compliance at the table they have in mid-stroke: {', '.join(shares)}"
-
-
-def _possible(effect: Effect, found: Search) -> tuple[str, ...]:
-    """Places that the effect may have on this machine."""
-    if isinstance(effect, StiffnessDeviation):
-        return parts_of(found.problem.plant.chain.values)
-    return effect.places
 
 
 def _near(found: Search, place: int) -> list[Attempt]:

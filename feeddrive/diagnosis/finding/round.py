@@ -81,10 +81,11 @@ def _promising_refined(scene: Scene, attempts: list[Attempt], pool: ThreadPoolEx
 
 
 def _best_per_place(attempts: Sequence[Attempt]) -> list[Attempt]:
-    """The best of each name and place: which film, which sensor is settled only with the other effects free."""
-    best: dict[tuple[str, str], Attempt] = {}
+    """The best of each name, port and place: which film or shaft it is shows only with the other effects free."""
+    best: dict[tuple[str, str, str], Attempt] = {}
     for attempt in attempts:
-        best.setdefault((attempt.name, attempt.fit.effects[-1].place), attempt)
+        effect = attempt.fit.effects[-1]
+        best.setdefault((attempt.name, str(effect.port), effect.place), attempt)
     return list(best.values())
 
 

@@ -15,6 +15,7 @@ from feeddrive.diagnosis.calibration.beyond import without_effects
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt
+from feeddrive.diagnosis.finding.elsewhere import at_likelier_place
 from feeddrive.diagnosis.finding.likelier import Near, Taken, likelier, of_likelier_law, with_play
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_map, with_curves_of
@@ -142,6 +143,11 @@ def search(
             denied |= dict.fromkeys((effect.name for effect in others), ANOTHER)
             impossible |= denied
             problem, found = refitted(problem, fit(problem, _without(found, others)))
+        moved = None if others else at_likelier_place(problem, found, asked.now.count)
+        if moved is not None and _members(moved[1]) not in met:
+            met |= {_members(found), _members(moved[1])}
+            problem, found = in_steps_told(*moved)
+            continue
         left_out = problem.budget.skips("declared values beyond their tolerances")
         scaled = None if left_out else with_scale_beyond(problem, found)
         if scaled is not None:  # the recorder is asked before the machine

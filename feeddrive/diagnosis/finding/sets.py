@@ -118,10 +118,10 @@ def _moves(
 
 
 def _may_join(one: Neighbour, attempts: Sequence[Attempt], i: int) -> bool:
-    """Whether no other effect of the name and place was added already."""
+    """Whether no other effect of the name, port and place was added already."""
     new = attempts[i].fit.effects[-1]
-    others = [attempts[k].fit.effects[-1] for k in one.added]
-    return not any(other.name == new.name and (other.place == new.place or not new.repeatable) for other in others)
+    others = [attempts[k].fit.effects[-1] for k in one.added if attempts[k].name == new.name]
+    return not any(not new.repeatable or (other.port, other.place) == (new.port, new.place) for other in others)
 
 
 def members_weighed(problem: Problem, found: Fit, count: int) -> tuple[Neighbour, ...]:
