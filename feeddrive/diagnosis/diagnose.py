@@ -16,7 +16,7 @@ from feeddrive.diagnosis.certainty.correlation import correlation
 from feeddrive.diagnosis.certainty.inclusion import asserted, odds_for, possible_effects
 from feeddrive.diagnosis.certainty.next_experiment import next_experiments
 from feeddrive.diagnosis.certainty.one_sided import all_intervals
-from feeddrive.diagnosis.certainty.preferred import with_the_preferred
+from feeddrive.diagnosis.certainty.preferred import judged_apart, with_the_preferred
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.judging.effect_results import effect_results, refused_effects
@@ -278,8 +278,12 @@ def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[
     rivals = rivals_of(found, judged)
     preferred, ranked = with_the_preferred(found, rivals)
     if preferred is not found:
-        kept, after = without_denied(preferred, judge(preferred), judge)
-        denied = _names(preferred) - _names(found) - _names(kept)
+        put_in = judge(preferred)
+        new = _names(preferred) - _names(found)
+        kept, after = without_denied(
+            preferred, put_in, judge, () if judged_apart(found.problem, judged, put_in) else new
+        )
+        denied = new - _names(kept)
         if denied:  # what its own evidence denies takes no place: what was taken stands
             rivals = [[rival for rival in alike if rival.effect.name not in denied] for alike in rivals]
         else:

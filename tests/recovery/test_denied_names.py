@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated
+from feeddrive.diagnosis.certainty.preferred import judged_apart
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging import veto
@@ -93,6 +94,42 @@ def test_channel_made_worse_is_given_back(rigid: Plant) -> None:
     found, judged = kept_of(rigid, Truth(), Payload.of(mass=15.0), iterations=0)
     assert found.fit.effects == () and "payload" in found.impossible
     assert worse_by(found.problem, judged, "motor_torque") < 0
+
+
+@pytest.mark.parametrize(
+    ("spared", "left"), [((), []), (("torque_ripple",), ["torque_ripple"])], ids=["asked", "spared"]
+)
+def test_gain_denies_no_name_in_the_place_of_one_that_says_the_same(
+    rigid: Plant, monkeypatch: pytest.MonkeyPatch, spared: tuple[str, ...], left: list[str]
+) -> None:
+    monkeypatch.setattr(veto, "_no_gain", lambda found, place, share: "too little")
+    monkeypatch.setattr(veto, "judged_changes", lambda found, judged: None)
+    runs = [rigid_run("a", Truth(ripple=0.01))], [rigid_run("b", Truth(ripple=0.01, seed=2))]
+    problem, evidence, _ = prepared(rigid, *runs, 0.75)
+    found = Search(problem, fit(problem, [RIPPLE]), (), (), {})
+    kept, _ = without_denied(found, judging(found, evidence), lambda other: judging(other, evidence), spared)
+    assert [effect.name for effect in kept.fit.effects] == left
+
+
+def test_sparing_asks_for_the_interval_still(rigid: Plant) -> None:
+    problem, evidence, _ = prepared(rigid, [rigid_run("a", Truth(seed=5))], [rigid_run("b", Truth(), slow=1.3)], 0.75)
+    found = Search(problem, fit(problem, [Payload.of(mass=0.05)]), (), (), {})
+    kept, _ = without_denied(found, judging(found, evidence), lambda other: judging(other, evidence), ("payload",))
+    assert kept.fit.effects == () and "interval" in kept.impossible["payload"]
+
+
+def test_judged_data_tell_two_apart_only_beyond_their_scatter(rigid: Plant) -> None:
+    """A mass is told to some 20 g here (its interval without any): 5 kg off shows, 1 g does not."""
+    problem, evidence, _ = prepared(
+        rigid, [rigid_run("a", Truth(mass=3.0))], [rigid_run("b", Truth(mass=3.0, seed=2))], 0.75
+    )
+
+    def at(mass: float) -> list[Judged]:
+        return judging(Search(problem, fit(problem, [Payload.of(mass=mass)], iterations=0), (), (), {}), evidence)
+
+    assert judged_apart(problem, at(3.0), at(8.0))
+    assert not judged_apart(problem, at(3.0), at(3.001))
+    assert not judged_apart(problem, at(8.0), at(3.0))  # better than what was taken
 
 
 def one_stroke(name: str, seed: int) -> Recording:

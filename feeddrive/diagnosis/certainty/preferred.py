@@ -11,7 +11,9 @@ from dataclasses import replace
 from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.judge import Judged, judged_residual
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit, read_coordinates
+from feeddrive.diagnosis.likelihood.cross_validation import SCATTER, compare_left_out
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.recordings.recordings import is_shift
@@ -37,6 +39,20 @@ def with_the_preferred(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Se
             refitted = fit(taken.problem, taken.fit.effects)
             return replace(found, problem=taken.problem, fit=refitted), [*rivals[:place], rest, *rivals[place + 1 :]]
     return found, list(rivals)
+
+
+def judged_apart(problem: Problem, taken: Sequence[Judged], other: Sequence[Judged]) -> bool:
+    """Whether data not fitted speak for what was taken and against what would take its place, beyond their scatter.
+
+    Args:
+        problem: of what was taken.
+        taken, other: the same recordings, with the one and with the other in.
+    """
+    mine, blocks = judged_residual(problem, [(one.after, one.evidence) for one in taken])
+    # on the samples of what was taken: a free play would leave the two with different ones
+    its, _ = judged_residual(problem, [(two.after, one.evidence) for one, two in zip(taken, other, strict=True)])
+    gain = compare_left_out(its, mine, blocks, 0.0)
+    return gain.gain > SCATTER * gain.standard_error
 
 
 def _preferred(problem: Problem, effect: Effect, alike: Sequence[Rival]) -> Rival | None:

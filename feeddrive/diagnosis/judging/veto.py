@@ -16,12 +16,15 @@ One name goes at a time, that with the least gain of those that are denied: of t
 stand. An effect that differs between the fitted recordings may be absent from the judged one, and is denied by the last
 alone. Where the judged recording is known to differ in a level from the fitted ones (`judged_changes`), gain and
 worsening are asked with that level allowed for.
+
+A name that takes the place of one that was not denied is not asked for its gain where the judged data do not tell the
+two apart (`spared`): of two laws that predict the same there, a bound on each one's own gain would part them by luck.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -67,7 +70,10 @@ class Denied:
 
 
 def without_denied(
-    found: Search, judged: list[Judged], judge: Callable[[Search], list[Judged]]
+    found: Search,
+    judged: list[Judged],
+    judge: Callable[[Search], list[Judged]],
+    spared: Collection[str] = (),
 ) -> tuple[Search, list[Judged]]:
     """The search without the names that their own evidence denies, and its judged recordings.
 
@@ -75,10 +81,12 @@ def without_denied(
         found: what the search took.
         judged: recordings with the found effects in.
         judge: judges other effects.
+        spared: names in the place of others that stood, which the judged data do not tell from those; none is denied
+            for its gain.
     """
     while True:
         found, judged = not_worse_than_declared(found, judged, judge)  # no name is to go for what fitted values do
-        if (denied := _first_denied(found, judged)) is None:
+        if (denied := _first_denied(found, judged, spared)) is None:
             return found, judged
         effects = found.fit.effects
         gone = effects[denied.place]
@@ -119,14 +127,15 @@ def not_worse_than_declared(
     return found, judged
 
 
-def _first_denied(found: Search, judged: Sequence[Judged]) -> Denied | None:
+def _first_denied(found: Search, judged: Sequence[Judged], spared: Collection[str]) -> Denied | None:
     """The denied effect with the least gain on data not fitted; None where there is none."""
     effects, problem = found.fit.effects, found.problem
     named = range(len(without_shifts(effects)))
     if not named:
         return None
     shares = [_share(found, judged, i) for i in named]
-    idle, worst = [_no_gain(found, i, share) for i, share in enumerate(shares)], _worst_channel(problem, judged)
+    idle = ["" if effects[i].name in spared else _no_gain(found, i, share) for i, share in enumerate(shares)]
+    worst = _worst_channel(problem, judged)
     other = judged_changes(found, judged) if worst or any(idle) else None
     if other is not None and other.carries:
         # a recording in which the effect itself is another says nothing against it
