@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival
-from feeddrive.diagnosis.finding.materiality import is_material
+from feeddrive.diagnosis.finding.materiality import is_material_here
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, judged_residual
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit, read_coordinates
@@ -57,7 +57,7 @@ def judged_apart(problem: Problem, taken: Sequence[Judged], other: Sequence[Judg
 
 def _preferred(problem: Problem, effect: Effect, alike: Sequence[Rival]) -> Rival | None:
     """The rival for which the data speak by as much as refuses one, else the simplest that is simpler."""
-    material = [rival for rival in alike if is_material(rival.effect, problem.plant)]
+    material = [rival for rival in alike if is_material_here(rival.effect, problem)]
     likeliest = min(material, key=lambda rival: rival.odds, default=None)
     if likeliest is not None and likeliest.odds < -AGAINST:
         return likeliest

@@ -1,11 +1,23 @@
-"""The physical minimum: what is too small for anyone to act on is no finding, however significant."""
+"""The physical minimum: what is too small for anyone to act on is no finding, however significant.
+
+A delay d is of no size by itself: it moves a channel y by d dy/dt, so that the motion says what it does. Of a torque
+that matters from `LEAST_MASS_SHARE` of its swing on, as an inertia does; of a position from the noise of its sensor on,
+at the highest speed that was seen.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
+import numpy as np
+
 from feeddrive.diagnosis.friction_at_port import declared_level
 from feeddrive.diagnosis.heat.heat_candidates import is_material_heat
-from feeddrive.effects.base import Effect, Kind, Port
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.effects.base import Effect, Kind, Port, number
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
+from feeddrive.effects.timing.channel_delay import ChannelDelay
+from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.plant.plant import Plant
 
 LEAST_FACTOR = 0.005
@@ -21,7 +33,7 @@ catalogue knows either to that, but a scale shows it, and without its name it is
 
 LEAST_MASS_SHARE = 0.001
 """A mass over the declared table mass, what swings on it included, and an inertia over the declared one of its shaft: a
-scale and a torque in steps of a thousandth show no less."""
+scale and a torque in steps of a thousandth show no less. So of a torque that a delay moves, over the torque's swing."""
 
 FORCE_KEYS = ("delta_force", "force", "peak")
 """Parameters that are forces at the table."""
@@ -46,6 +58,39 @@ def is_material(effect: Effect, plant: Plant) -> bool:
         return abs(values["factor"] - 1) >= LEAST_SHARE
     forces = [abs(number) for key, value in effect.values.items() if key in FORCE_KEYS for number in _numbers(value)]
     return not forces or max(forces) >= LEAST_SHARE * declared_level(plant, Port.TABLE)
+
+
+def is_material_here(effect: Effect, problem: Problem) -> bool:
+    """Whether an effect is of a size that matters on this plant and, of a delay, in the motion that was recorded."""
+    if not is_material(effect, problem.plant):
+        return False
+    if isinstance(effect, DriveDelay):
+        return _moves(problem, number(effect.values["delay"]), ("motor_torque",))
+    if isinstance(effect, ChannelDelay):
+        # all else seems early where the motor angle is late
+        late = problem.evidence[0].channels if effect.place == "motor_angle" else (effect.place,)
+        return _moves(problem, number(effect.values["delay"]), late)
+    return True
+
+
+def _moves(problem: Problem, delay: float, channels: Collection[str]) -> bool:
+    """Whether a delay [s] moves one of the channels, in one of the recordings, by as much as matters; true without any.
+
+    The rate is that of the prediction: the noise of a channel, differentiated, would make every delay matter.
+    """
+    asked = False
+    for one in problem.evidence:
+        predicted = problem.predictor.predict(problem.plant, one)
+        for name in [name for name in one.channels if name in channels]:
+            moved = delay * np.gradient(predicted[name], one.recording.sample_time)[one.counted]
+            if name == "motor_torque":
+                small = np.sqrt(np.mean(moved**2)) < LEAST_MASS_SHARE * np.std(predicted[name][one.counted])
+            else:
+                small = np.max(np.abs(moved), initial=0.0) < one.known_to(name)
+            asked = True
+            if not small:  # a declared plant that cannot be simulated leaves it open
+                return True
+    return not asked
 
 
 def _numbers(value: float | tuple[float, ...]) -> tuple[float, ...]:

@@ -17,7 +17,7 @@ from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt
 from feeddrive.diagnosis.finding.elsewhere import at_likelier_place
 from feeddrive.diagnosis.finding.likelier import Near, Taken, likelier, of_likelier_law, with_play
-from feeddrive.diagnosis.finding.materiality import is_material
+from feeddrive.diagnosis.finding.materiality import is_material_here
 from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_map, with_curves_of
 from feeddrive.diagnosis.finding.refitting import (
     as_payload,
@@ -268,7 +268,7 @@ def _ended(problem: Problem, found: Fit) -> tuple[Problem, Fit, list[Effect]]:
     closed = with_curves_of(problem, ())  # names are weighed, and rivals tried, against all that is left
     if closed is not problem:
         problem, found = closed, fit(closed, found.effects, iterations=JOINT_ITERATIONS)
-    small = [one for one in found.effects if not is_material(one, problem.plant)]
+    small = [one for one in found.effects if not is_material_here(one, problem)]
     if small:
         rest = _without(found, small)
         problem = without_effects(problem, small, rest)
