@@ -10,8 +10,10 @@ import pytest
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.calibration.together import stepped_together
 from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes
+from feeddrive.diagnosis.finding import search as searching
 from feeddrive.diagnosis.finding.refitting import at_rest, cost
-from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.source.torque_ripple import TorqueRipple
 from tests.recovery.rigid_runs import Truth
 from tests.recovery.test_value_asked_once import begun
@@ -44,3 +46,21 @@ def test_slopes_at_rest_are_those_of_where_it_is(tmp_path: Path, away: float) ->
     columns, others = there.whitener.columns, anew.whitener.columns
     # the step of a slope is a thousandth of a value, and a slope is off by as much
     assert np.linalg.norm(columns - others) < 1e-3 * np.linalg.norm(others)
+
+
+def test_tolerances_are_asked_of_values_at_rest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    near = calibrated(begun(tmp_path, Truth()))
+    assert near.calibration is not None
+    asked: list[tuple[Problem, Fit]] = []
+
+    def noted(problem: Problem, found: Fit) -> None:
+        asked.append((problem, found))
+
+    monkeypatch.setattr(searching, "with_value_beyond", noted)
+    searching.search(near.at_values(near.calibration.coordinates + 1.5))  # within their tolerances, not at rest
+    assert asked
+    for problem, found in asked:
+        there, then = stepped_together(problem, found.effects)
+        variance = near.calibration.variance
+        # no step takes half a nat more: a variance of the doubled cost
+        assert cost(problem, found, variance) - cost(there.settled(then.effects), then, variance) < variance

@@ -149,6 +149,8 @@ def search(
             problem, found = in_steps_told(*moved)
             continue
         left_out = problem.budget.skips("declared values beyond their tolerances")
+        if not left_out:  # on their way to rest, values pass tolerances that they stay within
+            problem, found = at_rest(problem, found)
         scaled = None if left_out else with_scale_beyond(problem, found)
         if scaled is not None:  # the recorder is asked before the machine
             problem, found = scaled
