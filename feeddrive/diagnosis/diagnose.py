@@ -18,7 +18,8 @@ from feeddrive.diagnosis.certainty.next_experiment import next_experiments
 from feeddrive.diagnosis.certainty.one_sided import all_intervals
 from feeddrive.diagnosis.certainty.preferred import judged_apart, with_the_preferred
 from feeddrive.diagnosis.certainty.uncertainty import certainty
-from feeddrive.diagnosis.finding.search import Search, search
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.denied_again import settled_names
 from feeddrive.diagnosis.judging.effect_results import effect_results, refused_effects
 from feeddrive.diagnosis.judging.judge import Judged, channel_results, judged_recordings, prepared_for_judging, share_of
 from feeddrive.diagnosis.judging.result import (
@@ -35,7 +36,7 @@ from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
 from feeddrive.diagnosis.numbers.number_rows import MeasuredRows, NumberResult, number_results, refuse_ungiven
 from feeddrive.diagnosis.preparation import Shown, informative, prepared, shown
 from feeddrive.diagnosis.recordings.compared import compared_recordings, last_state, machine_as_last, with_carrying
-from feeddrive.diagnosis.recordings.recordings import is_shift, without_shifts
+from feeddrive.diagnosis.recordings.recordings import without_shifts
 from feeddrive.diagnosis.recordings.recordings_search import Searched, search_recordings
 from feeddrive.diagnosis.recordings.rehoming import rehomed_plant
 from feeddrive.diagnosis.simulated.loop_evidence import refuse_unfit_loop
@@ -267,14 +268,7 @@ def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[
     def judge(other: Search) -> list[Judged]:
         return _judged(other, evidence)[0]
 
-    kept, judged = without_denied(found, judged, judge)
-    again_asked = kept is not found and not any(is_shift(effect) for effect in kept.fit.effects)
-    if again_asked and not budget.skips("a search without the names that are denied"):
-        progress("searching again without the names that are denied")
-        again = search(kept.problem, progress, kept)
-        if len(again.fit.effects) > len(kept.fit.effects):
-            kept, judged = without_denied(again, judge(again), judge)
-    found = kept
+    found, judged = settled_names(found, judged, judge, progress)
     rivals = rivals_of(found, judged)
     preferred, ranked = with_the_preferred(found, rivals)
     if preferred is not found:

@@ -14,6 +14,7 @@ from feeddrive.diagnosis.certainty.preferred import judged_apart
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging import veto
+from feeddrive.diagnosis.judging.denied_again import settled_names
 from feeddrive.diagnosis.judging.judge import Judged, Share, prepared_for_judging
 from feeddrive.diagnosis.judging.veto import ends_reached, not_worse_than_declared, without_denied, worse_by
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
@@ -87,6 +88,27 @@ def test_a_step_to_a_plant_that_cannot_be_simulated_denies_nothing(
     monkeypatch.setattr(veto, "share_beyond", not_followed)
     found, _ = kept_of(rigid, Truth(ripple=0.01), RIPPLE, Stribeck.of(delta_force=0.2, velocity=0.02))
     assert [effect.name for effect in found.fit.effects] == ["torque_ripple"]
+
+
+def test_name_denied_beside_what_was_lost_with_another_is_asked_again(rigid: Plant) -> None:
+    """Twice the viscous friction, as a warm-up that is over at once, which is no estimate: the ripple goes with it.
+
+    The search then finds the friction as such, and the ripple that stood beside the warm-up stands beside it.
+    """
+    truth = Truth(viscous=2.0, ripple=2e-3)
+    problem, evidence, _ = prepared(rigid, [rigid_run("a", truth)], [rigid_run("b", truth, slow=1.3)], 0.75)
+    warm = find_effect("viscous_warmup").of(Port.TABLE, share=-1.0, time_constant=0.1)
+    ripple = TorqueRipple.of(amplitude=2e-3, order=3.0, phase=0.0)
+    found = Search(problem, fit(problem, [warm, ripple]), (), (), {})
+    judged = judging(found, evidence)
+    first, _ = without_denied(found, judged, lambda other: judging(other, evidence))
+    assert first.fit.effects == () and list(first.impossible) == ["viscous_warmup", "torque_ripple"]
+    kept, _ = settled_names(found, judged, lambda other: judging(other, evidence), lambda text: None)
+    values = {effect.name: effect.values for effect in kept.fit.effects}
+    assert values.keys() == {"friction_deviation", "torque_ripple"}
+    # three deviations of an amplitude beside white noise in half of the rows, which the band leaves
+    assert values["torque_ripple"]["amplitude"] == pytest.approx(2e-3, abs=3 * NOISE / math.sqrt(3000))
+    assert "viscous_warmup" in kept.impossible and "torque_ripple" not in kept.impossible
 
 
 def test_channel_made_worse_is_given_back(rigid: Plant) -> None:

@@ -1,0 +1,67 @@
+"""The search goes on without the names that are denied, and asks those again whose denial it has overtaken.
+
+The first name that goes is denied beside all the others. Those that go after it are denied beside a set that lacks what
+the first one stood for, and say less of themselves: beside a nut without its play no structure rings as it did. So they
+are asked once more beside what the search then puts in its place, and judged as any other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from feeddrive.diagnosis.finding.search import Search, search
+from feeddrive.diagnosis.judging.judge import Judged
+from feeddrive.diagnosis.judging.veto import without_denied
+from feeddrive.diagnosis.recordings.recordings import is_shift
+
+Found = tuple[Search, list[Judged]]
+"""A search, and the recordings judged on with what it found."""
+
+
+def settled_names(
+    found: Search, judged: list[Judged], judge: Callable[[Search], list[Judged]], progress: Callable[[str], None]
+) -> Found:
+    """The names that data not fitted leave, once the search has gone on without those that they deny.
+
+    Args:
+        found: what the search took.
+        judged: recordings with the found effects in.
+        judge: judges other effects.
+        progress: called with a line that says what is going on.
+    """
+    budget = found.problem.budget
+    kept, judged = without_denied(found, judged, judge)
+    if kept is found or any(is_shift(effect) for effect in kept.fit.effects):
+        return kept, judged
+    if budget.skips("a search without the names that are denied"):
+        return kept, judged
+    progress("searching again without the names that are denied")
+    other = _gone_on(kept, judge, progress)
+    overtaken = _denied_later(found, kept)
+    if other is None:
+        return kept, judged
+    if not overtaken or not _adds(other[0], kept) or budget.skips("names denied beside what is no longer named"):
+        return other
+    progress(f"asking again beside what is named now: {', '.join(overtaken)}")
+    reasons = {name: why for name, why in other[0].impossible.items() if name not in overtaken}
+    more = _gone_on(replace(other[0], impossible=reasons), judge, progress)
+    return other if more is None or not _adds(more[0], other[0]) else more
+
+
+def _gone_on(kept: Search, judge: Callable[[Search], list[Judged]], progress: Callable[[str], None]) -> Found | None:
+    """What a search that goes on from some names finds and data not fitted leave; None where it finds no more."""
+    again = search(kept.problem, progress, kept)
+    if len(again.fit.effects) <= len(kept.fit.effects):
+        return None
+    return without_denied(again, judge(again), judge)
+
+
+def _denied_later(found: Search, kept: Search) -> list[str]:
+    """Names that were denied once another one had gone, in their order."""
+    return [name for name in kept.impossible if name not in found.impossible][1:]
+
+
+def _adds(found: Search, before: Search) -> bool:
+    """Whether there is a further name."""
+    return len(found.fit.effects) > len(before.fit.effects)
