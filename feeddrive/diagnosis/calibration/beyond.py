@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -26,7 +26,7 @@ from feeddrive.diagnosis.calibration.declared import (
 )
 from feeddrive.diagnosis.calibration.known import TOLERANCE, Known, known_values
 from feeddrive.diagnosis.calibration.together import fitted_together
-from feeddrive.diagnosis.calibration.value_slopes import ENOUGH, with_slopes
+from feeddrive.diagnosis.calibration.value_slopes import ENOUGH, with_new_slopes, with_slopes
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import regained
@@ -45,13 +45,18 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
 
     One does where no values within their tolerances explain the recordings, and some do that are all but its own, as
     the search has them and as they are placed by scatter. Of effects that are alike to the recordings the likeliest is
-    taken; `other_places` says the others.
+    taken; `other_places` says the others. Where the values contradict each other whichever is free, they have run to
+    where slopes tell nothing of it, and each is asked from the declared machine (`_from_declared`).
 
     Returns:
         The problem without its values among those that are fitted, and the effect, from its likeliest values.
     """
     known = known_values(problem, found)
     gained = _gained(known)
+    if known is not None and gained and all(_contradict(known, places) for places in gained):
+        begun = _from_declared(problem, found, gained)
+        if begun is not None:
+            return begun
     if known is None or not any(gain > _sure(places) for places, gain in gained.items()):
         return None
     placed, most = _gained(placed_by_scatter(problem, found)), max(gained.values())
@@ -65,6 +70,53 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
     freed, (effect,) = said_by_effects(there, [as_effect(problem.plant, known.values[chosen[0]], 0.0)])
     freed, together = fitted_together(freed, (*found.effects, effect))
     return freed, together[-1]
+
+
+def _contradict(known: Known, places: Sequence[int]) -> bool:
+    """Whether values contradict each other, as seldom by chance as `SURE` deviations, with some of them free."""
+    others = len(known.values) - len(places)
+    return others > 0 and known.least(*places) > _sure(range(others))
+
+
+def _from_declared(
+    problem: Problem, found: Fit, groups: Iterable[tuple[int, ...]]
+) -> tuple[Problem, Effect] | None:  # fmt: skip
+    """The effect beyond its tolerance whose machine, begun as declared, is the likeliest; None where none is asserted.
+
+    A value that is off by far draws all others along, and from where they have gone no step leads back. Free from the
+    beginning it needs none of them. It is asserted by what the recordings say at its machine, not where the values had
+    run to.
+    """
+    known = problem.calibration
+    assert known is not None
+    begun = with_new_slopes(at_declared(problem), found.effects)
+    machines = {places: _with_free_values(begun, found.effects, places) for places in groups}
+    costs = {places: _cost(there, found.effects, known.variance) for places, there in machines.items()}
+    chosen = min(costs, key=costs.__getitem__)
+    if not costs[chosen] < _cost(problem, found.effects, known.variance):
+        return None
+    freed, (effect,) = said_by_effects(machines[chosen], [as_effect(problem.plant, known.values[chosen[0]], 0.0)])
+    freed, (*rest, effect) = fitted_together(freed, (*found.effects, effect))
+    back = given_back(freed, effect)
+    assert back.calibration is not None
+    values = back.calibration.values
+    places = tuple(i for i, value in enumerate(values) if value.name and is_said_by(value, effect))
+    coordinates = back.calibration.coordinates.copy()
+    for i in places:
+        coordinates[i] = _coordinate(problem.plant, values[i], effect)
+    if not np.all(np.isfinite(coordinates)):
+        return None
+    there = with_new_slopes(back.at_values(coordinates), rest)
+    told = known_values(there, fit(there, rest))
+    return (freed, effect) if told is not None and _gain(told, places) > _sure(places) else None
+
+
+def _cost(problem: Problem, effects: Sequence[Effect], variance: float) -> float:
+    """What is left, a row being worth `variance`, and what the values cost that are off."""
+    assert problem.calibration is not None
+    left = problem.unwhitened(effects)
+    total = float(left @ left) + variance * float(np.sum(problem.calibration.coordinates**2))
+    return total if np.isfinite(total) else np.inf
 
 
 def with_torque_scale(problem: Problem, found: Fit) -> Problem | None:
