@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.calibration.beyond import given_back, is_within_tolerance, said_by_effects
 from feeddrive.diagnosis.calibration.calibration import Calibration, whitener
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values, with_values
+from feeddrive.diagnosis.calibration.stated import given_back, is_within_tolerance, said_by_effects
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.tolerances import MASS, deviation_of
 from feeddrive.diagnosis.motion.prediction import AxisPredictor

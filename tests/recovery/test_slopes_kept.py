@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration import value_slopes
-from feeddrive.diagnosis.calibration.beyond import _share, said_by_effects
+from feeddrive.diagnosis.calibration.beyond import _share
 from feeddrive.diagnosis.calibration.calibrate import calibrated, recalibrated
+from feeddrive.diagnosis.calibration.stated import said_by_effects
 from feeddrive.diagnosis.calibration.value_slopes import have_slopes, with_slopes
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.base import Effect

@@ -14,7 +14,7 @@ from math import log
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import given_back, said_by_effects
+from feeddrive.diagnosis.calibration.stated import given_back, said_by_effects
 from feeddrive.diagnosis.calibration.together import fitted_together
 from feeddrive.diagnosis.certainty.certainty_result import Ambiguity
 from feeddrive.diagnosis.certainty.imitations import imitations_of

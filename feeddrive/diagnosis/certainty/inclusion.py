@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import logsumexp
 
-from feeddrive.diagnosis.calibration.beyond import without_effects
+from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival
 from feeddrive.diagnosis.finding.likelier import Near
 from feeddrive.diagnosis.finding.search import Search

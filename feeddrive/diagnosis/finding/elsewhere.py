@@ -7,7 +7,7 @@ that a search finds once is no candidate any more, so that its other places are 
 
 from __future__ import annotations
 
-from feeddrive.diagnosis.calibration.beyond import given_back
+from feeddrive.diagnosis.calibration.stated import given_back
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.refitting import refitted
 from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, said_by_effects, with_torque_scale
+from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, with_torque_scale
 from feeddrive.diagnosis.calibration.calibrate import (
     PASSES,
     at_declared,
@@ -14,6 +14,7 @@ from feeddrive.diagnosis.calibration.calibrate import (
     recalibrated_by_rest,
 )
 from feeddrive.diagnosis.calibration.known import TOLERANCE
+from feeddrive.diagnosis.calibration.stated import said_by_effects
 from feeddrive.diagnosis.calibration.together import fitted_together, stepped_together
 from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes, with_slopes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import is_within_tolerance
+from feeddrive.diagnosis.calibration.stated import is_within_tolerance
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates

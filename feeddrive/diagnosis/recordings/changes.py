@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtri
 
-from feeddrive.diagnosis.calibration.beyond import said_by_effects
+from feeddrive.diagnosis.calibration.stated import said_by_effects
 from feeddrive.diagnosis.finding.attempt import SCANNED_ITERATIONS, with_predictable
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison

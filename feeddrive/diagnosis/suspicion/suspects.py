@@ -26,9 +26,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import said_by_effects
 from feeddrive.diagnosis.calibration.calibrate import calibrated, calibrated_list
 from feeddrive.diagnosis.calibration.known import known_values
+from feeddrive.diagnosis.calibration.stated import said_by_effects
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.finding.refitting import refitted
 from feeddrive.diagnosis.finding.search import Search
