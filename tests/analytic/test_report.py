@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from feeddrive.diagnosis.calibration.calibrated_result import CalibratedResult
 from feeddrive.diagnosis.judging.effect_results import _why_not
 from feeddrive.diagnosis.judging.result import (
     ChannelSeries,
@@ -36,6 +37,7 @@ from feeddrive.report.pages.sections import verdict_section
 from feeddrive.report.words.number_text import share_text, times_text
 from feeddrive.report.words.verdict import is_noise, verdict_sentences
 from feeddrive.report.words.words import plain as words
+from feeddrive.units.quantity import percent
 from tests.analytic import report_examples as examples
 
 NASTY = '<script>alert("1")</script> & $x_{ $'
@@ -131,6 +133,15 @@ def test_nothing_missing_is_said_plainly() -> None:
     checked(text)
     assert "None: no effect was added" in text and "Nothing above the sensor noise" in text
     assert "→" not in text  # before and after are the same plant, so no pair of figures is shown
+
+
+@pytest.mark.parametrize(("ci95", "beyond"), [((1.8, 2.6), True), ((1.1, 2.6), False), ((0.5, 0.8), True)])
+def test_a_value_beyond_its_tolerance_is_told_where_no_name_says_so(ci95: tuple[float, float], beyond: bool) -> None:
+    value = CalibratedResult("axial_stiffness", "axial stiffness", "N/m", 1.0, 0.5 * sum(ci95), ci95, 0.2)
+    said = " ".join(verdict_sentences(dataclasses.replace(examples.nothing_missing(), calibrated=(value,))))
+    assert ("within their tolerances" in said) is not beyond
+    assert ("Calibrated beyond tolerance" in said) is beyond
+    assert not beyond or f"axial stiffness {percent(value.value)} of the declared" in said
 
 
 def test_calm_box_is_for_machines_without_a_fault(found: Diagnosis) -> None:

@@ -46,6 +46,12 @@ class CalibratedResult:
     tolerance: float
     written: tuple[tuple[str, str, float], ...] = ()
 
+    @property
+    def is_beyond(self) -> bool:
+        """Whether the whole interval lies beyond the tolerance, a factor of one plus it either way."""
+        low, high = (end / self.declared for end in self.ci95)
+        return low > 1 + self.tolerance or high < 1 / (1 + self.tolerance)
+
 
 def calibrated_results(problem: Problem, found: Fit) -> tuple[CalibratedResult, ...]:
     """The declared values of which the recordings say more than their tolerance."""

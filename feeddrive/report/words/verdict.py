@@ -9,6 +9,7 @@ from feeddrive.report.words.explained_words import odds_text
 from feeddrive.report.words.number_text import error_text, share_text, significant
 from feeddrive.report.words.parameters import effect_sentence
 from feeddrive.report.words.words import effect_words, joined, plain, variable_words
+from feeddrive.units.quantity import percent
 
 _NOISE_REACHED = 1.5
 """An error up to this multiple of the sensor noise counts as noise: the noise itself is only estimated."""
@@ -22,7 +23,7 @@ def verdict_sentences(diagnosis: Diagnosis) -> list[str]:
     changed = f"Between the recordings changed: {'; '.join(stated)}." if stated else ""
     found = [_main_finding(diagnosis), diagnosis.untried, beside, changed]
     sentences = [*found, _errors(diagnosis), *_above_noise(diagnosis)]
-    return [sentence for sentence in sentences + _doubts(diagnosis) if sentence]
+    return [sentence for sentence in sentences + _beyond(diagnosis) + _doubts(diagnosis) if sentence]
 
 
 def noise_multiple(channel: ChannelResult) -> float:
@@ -46,7 +47,8 @@ def _main_finding(diagnosis: Diagnosis) -> str:
         return f"The declared plant lacks something of no known name: {tables}."
     if diagnosis.changes.changes:
         return "No effect is missing in every recording, but the recordings differ."
-    within = ", its values calibrated within their tolerances," if diagnosis.calibrated else ""
+    all_within = " within their tolerances" if not any(one.is_beyond for one in diagnosis.calibrated) else ""
+    within = f", its values calibrated{all_within}," if diagnosis.calibrated else ""
     if diagnosis.untried:
         return "Nothing was found that the declared plant lacks, as far as was tried."
     if all(is_noise(channel) for channel in diagnosis.channels):
@@ -121,6 +123,20 @@ def _doubts(diagnosis: Diagnosis) -> list[str]:
         change = f"{share_text(run.before)} → {share_text(run.after)}"
         sentences.append(f"Closed-loop simulation error of {plain(run.channel)}, relative: {change}.")
     return sentences
+
+
+def _beyond(diagnosis: Diagnosis) -> list[str]:
+    """Values that were calibrated beyond their tolerances, and are not asserted to be there."""
+    beyond = [
+        f"{one.words} {percent(one.value / one.declared)} of the declared (tolerance {percent(one.tolerance)})"
+        for one in diagnosis.calibrated
+        if one.is_beyond and one.key != "torque_constant"  # the recorder's: told with its mend under `quality`
+    ]
+    if not beyond:
+        return []
+    return [
+        f"Calibrated beyond tolerance, which these recordings do not settle: {joined(beyond)}. Check what is declared."
+    ]
 
 
 def _possible(diagnosis: Diagnosis) -> list[str]:
