@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated
-from feeddrive.diagnosis.calibration.together import stepped_together
+from feeddrive.diagnosis.calibration.together import cost, stepped_together
 from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes
 from feeddrive.diagnosis.finding import search as searching
-from feeddrive.diagnosis.finding.refitting import at_rest, cost
+from feeddrive.diagnosis.finding.refitting import at_rest
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.source.torque_ripple import TorqueRipple
@@ -27,12 +27,13 @@ def test_values_that_begin_elsewhere_come_to_the_same_rest(tmp_path: Path, away:
     variance = near.calibration.variance
     far = near.at_values(near.calibration.coordinates + away)
     begin, rest = [at_rest(one, fit(one, (ripple,))) for one in (near, far)]
-    unmoved = cost(far, fit(far, (ripple,)), variance)
+    begun_at, rest_at = [cost(there, then.effects, variance) for there, then in (begin, rest)]
+    unmoved = cost(far, fit(far, (ripple,)).effects, variance)
     # each ends where a step takes less than half a nat: a variance of the doubled cost
-    assert abs(cost(*rest, variance) - cost(*begin, variance)) < 2 * variance
-    assert unmoved > cost(*rest, variance) + 100 * variance
+    assert abs(rest_at - begun_at) < 2 * variance
+    assert unmoved > rest_at + 100 * variance
     again, found = stepped_together(rest[0], rest[1].effects)
-    assert cost(*rest, variance) - cost(again.settled(found.effects), found, variance) < variance
+    assert rest_at - cost(again.settled(found.effects), found.effects, variance) < variance
 
 
 @pytest.mark.parametrize("away", [-3.0, 3.0])
@@ -63,4 +64,7 @@ def test_tolerances_are_asked_of_values_at_rest(tmp_path: Path, monkeypatch: pyt
         there, then = stepped_together(problem, found.effects)
         variance = near.calibration.variance
         # no step takes half a nat more: a variance of the doubled cost
-        assert cost(problem, found, variance) - cost(there.settled(then.effects), then, variance) < variance
+        assert (
+            cost(problem, found.effects, variance) - cost(there.settled(then.effects), then.effects, variance)
+            < variance
+        )

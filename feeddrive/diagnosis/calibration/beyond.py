@@ -22,7 +22,7 @@ from feeddrive.diagnosis.calibration.declared import (
 )
 from feeddrive.diagnosis.calibration.known import Known, known_values
 from feeddrive.diagnosis.calibration.stated import coordinate_said, given_back, said_by_effects
-from feeddrive.diagnosis.calibration.together import fitted_together
+from feeddrive.diagnosis.calibration.together import cost, fitted_together
 from feeddrive.diagnosis.calibration.value_slopes import ENOUGH, with_new_slopes, with_slopes
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
@@ -55,11 +55,11 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
         begun = _from_declared(problem, found, gained)
         if begun is not None:
             return begun
-    if known is None or not any(gain > _sure(places) for places, gain in gained.items()):
+    if known is None or not any(gain > _sure(len(places)) for places, gain in gained.items()):
         return None
     placed, most = _gained(placed_by_scatter(problem, found)), max(gained.values())
     alike = [places for places, gain in gained.items() if gain > most - AGAINST]
-    alike = [places for places in alike if min(gained[places], placed.get(places, 0.0)) > _sure(places)]
+    alike = [places for places in alike if min(gained[places], placed.get(places, 0.0)) > _sure(len(places))]
     if not alike:
         return None
     costs = {places: known.likeliest({i: BEYOND / known.values[i].deviation for i in places})[1] for places in alike}
@@ -73,7 +73,7 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
 def _contradict(known: Known, places: Sequence[int]) -> bool:
     """Whether values contradict each other, as seldom by chance as `SURE` deviations, with some of them free."""
     others = len(known.values) - len(places)
-    return others > 0 and known.least(*places) > _sure(range(others))
+    return others > 0 and known.least(*places) > _sure(others)
 
 
 def _from_declared(
@@ -88,16 +88,13 @@ def _from_declared(
     known = problem.calibration
     assert known is not None
     begun = with_new_slopes(at_declared(problem), found.effects)
-
-    def cost(there: Problem) -> float:
-        return _cost(there, found.effects, known.variance)
-
-    stepped = {places: cost(_with_free_values(begun, found.effects, places, 1)) for places in groups}
+    effects, variance = found.effects, known.variance
+    stepped = {places: cost(_with_free_values(begun, effects, places, 1), effects, variance) for places in groups}
     promising = sorted(stepped, key=stepped.__getitem__)[:TRIED]
-    machines = {places: _with_free_values(begun, found.effects, places) for places in promising}
-    costs = {places: cost(there) for places, there in machines.items()}
+    machines = {places: _with_free_values(begun, effects, places) for places in promising}
+    costs = {places: cost(there, effects, variance) for places, there in machines.items()}
     chosen = min(costs, key=costs.__getitem__)
-    if costs[chosen] >= cost(problem):
+    if costs[chosen] >= cost(problem, effects, variance):
         return None
     freed, (effect,) = said_by_effects(machines[chosen], [as_effect(problem.plant, known.values[chosen[0]], 0.0)])
     freed, (*rest, effect) = fitted_together(freed, (*found.effects, effect))
@@ -112,15 +109,7 @@ def _from_declared(
         return None
     there = with_new_slopes(back.at_values(coordinates), rest)
     told = known_values(there, fit(there, rest))
-    return (freed, effect) if told is not None and _gain(told, places) > _sure(places) else None
-
-
-def _cost(problem: Problem, effects: Sequence[Effect], variance: float) -> float:
-    """What is left, a row being worth `variance`, and what the values cost that are off."""
-    assert problem.calibration is not None
-    left = problem.unwhitened(effects)
-    total = float(left @ left) + variance * float(np.sum(problem.calibration.coordinates**2))
-    return total if np.isfinite(total) else np.inf
+    return (freed, effect) if told is not None and _gain(told, places) > _sure(len(places)) else None
 
 
 def with_torque_scale(problem: Problem, found: Fit) -> Problem | None:
@@ -150,22 +139,22 @@ def _is_of_torque(known: Known) -> bool:
     if not scale:
         return False
     gained, gain = _gained(known), _gain(known, scale)
-    if gain <= _sure(scale):
+    if gain <= _sure(len(scale)):
         return False
     left = known.least(*scale)
-    if any(left - known.least(*scale, *places) > _sure(places) for places in gained):
+    if any(left - known.least(*scale, *places) > _sure(len(places)) for places in gained):
         return False
 
-    def cost(places: Sequence[int]) -> float:
+    def unlikeliness(places: Sequence[int]) -> float:
         return known.likeliest({i: BEYOND / known.values[i].deviation for i in places})[1]
 
     alike = [places for places, its in gained.items() if its > gain - AGAINST]
-    return all(cost(scale) <= cost(places) for places in alike)
+    return all(unlikeliness(scale) <= unlikeliness(places) for places in alike)
 
 
-def _sure(places: Sequence[int]) -> float:
+def _sure(count: int) -> float:
     """What T is lowered by, by chance, by values that are free of their tolerances, as seldom as `SURE` deviations."""
-    return float(chdtri(len(places), math.erfc(SURE / math.sqrt(2))))
+    return float(chdtri(count, math.erfc(SURE / math.sqrt(2))))
 
 
 def _gained(known: Known | None) -> dict[tuple[int, ...], float]:

@@ -42,3 +42,11 @@ def fitted_together(problem: Problem, effects: Sequence[Effect], passes: int = P
         if np.max(np.abs(moved(before, problem)), initial=0.0) < ENOUGH:
             break
     return problem, [*effects]
+
+
+def cost(problem: Problem, effects: Sequence[Effect], variance: float) -> float:
+    """What simulation leaves and declared values cost, a row being worth `variance`; slopes only promise it."""
+    assert problem.calibration is not None
+    left, values = problem.unwhitened(effects), problem.calibration.coordinates
+    total = float(left @ left) + variance * float(values @ values)
+    return total if np.isfinite(total) else np.inf

@@ -15,7 +15,7 @@ from feeddrive.diagnosis.calibration.calibrate import (
 )
 from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.calibration.stated import said_by_effects
-from feeddrive.diagnosis.calibration.together import fitted_together, stepped_together
+from feeddrive.diagnosis.calibration.together import cost, fitted_together, stepped_together
 from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes, with_slopes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.spring_law import TOLD
@@ -44,7 +44,7 @@ def refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     if not begun and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
         other = stepped_together(at_declared(problem), found.effects, JOINT_ITERATIONS)
         variance = there.calibration.variance
-        result = min(result, other, key=lambda one: cost(one[0].settled(one[1].effects), one[1], variance))
+        result = min(result, other, key=lambda one: cost(one[0].settled(one[1].effects), one[1].effects, variance))
     return balanced(*result)
 
 
@@ -73,18 +73,10 @@ def at_rest(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     for _ in range(PASSES):
         there, then = stepped_together(problem, found.effects, JOINT_ITERATIONS)
         there = there.settled(then.effects)
-        if cost(problem, found, variance) - cost(there, then, variance) <= variance:
+        if cost(problem, found.effects, variance) - cost(there, then.effects, variance) <= variance:
             break
         problem, found = with_new_slopes(there, then.effects), then
     return problem, fit(problem, found.effects, iterations=0)
-
-
-def cost(problem: Problem, found: Fit, variance: float) -> float:
-    """What simulation leaves and declared values cost, a row being worth `variance`; slopes only promise it."""
-    assert problem.calibration is not None
-    left, values = problem.unwhitened(found.effects), problem.calibration.coordinates
-    total = float(left @ left) + variance * float(values @ values)
-    return total if np.isfinite(total) else np.inf
 
 
 def balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
