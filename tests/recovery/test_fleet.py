@@ -6,6 +6,7 @@ import dataclasses
 import math
 import tomllib
 from collections import Counter
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +31,7 @@ from tests.generator.telling import (
 )
 from tests.recovery.fleet.case import LEAST_TOLD, MOST_STEPS, SHARES, Case, _grown, case, encoder_null_seeds, kind_of
 from tests.recovery.fleet.floor import true_errors
-from tests.recovery.fleet.run import cases_done
+from tests.recovery.fleet.run import Record, cases_done, until_late
 from tests.recovery.fleet.state import state_files
 from tests.recovery.fleet.table import section, wilson
 from tests.recovery.fleet.verdict import Verdict, possible
@@ -224,6 +225,20 @@ def test_state_covers_the_package_and_its_c() -> None:
     text = "\n".join(path.as_posix() for path in state_files())
     for part in ("feeddrive/cli/", "feeddrive/report/", "plants/", "tests/generator/", "tests/recovery/fleet/"):
         assert part in text
+
+
+def test_a_run_that_ends_by_its_time_keeps_what_is_in_work() -> None:
+    begun: list[int] = []
+
+    def begin(seed: int) -> Future[Record | None]:
+        begun.append(seed)
+        future = Future[Record | None]()
+        future.set_result({"seed": seed})
+        return future
+
+    results = list(until_late(begin, range(10), 2, lambda: len(begun) >= 5))
+    assert begun == [0, 1, 2, 3, 4]
+    assert sorted(one["seed"] for one in results if one is not None) == begun
 
 
 def test_broken_last_line_is_run_again(tmp_path: Path) -> None:

@@ -10,8 +10,9 @@ import time
 import traceback
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -87,13 +88,22 @@ def run_missing(
                 keep(record)
         return
     with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:
-        futures = [pool.submit(one, seed, limit, most_rows) for seed in missing]
-        for future in as_completed(futures):
-            if not future.cancelled() and (record := future.result()) is not None:
-                keep(record)
-            if late():
-                pool.shutdown(wait=False, cancel_futures=True)
-                break
+        for result in until_late(lambda seed: pool.submit(one, seed, limit, most_rows), missing, workers, late):
+            if result is not None:
+                keep(result)
+
+
+def until_late(
+    begin: Callable[[int], Future[Record | None]], seeds: Sequence[int], workers: int, late: Callable[[], bool]
+) -> Iterator[Record | None]:  # fmt: skip
+    """Yield results as they come, one case begun for each worker that is free; what is in work when late is awaited."""
+    waiting = iter(seeds)
+    working = {begin(seed) for seed in islice(waiting, workers) if not late()}
+    while working:
+        finished, working = wait(working, return_when=FIRST_COMPLETED)
+        for future in finished:
+            yield future.result()
+        working |= {begin(seed) for seed in islice(waiting, len(finished)) if not late()}
 
 
 def one(seed: int, limit: float, most_rows: int = 0) -> Record | None:
