@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.ndimage import uniform_filter1d
 
 from feeddrive.diagnosis.calibration.calibration import whitener
+from feeddrive.diagnosis.certainty.rival_odds import Residuals, odds_and_distance
 from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.finding.sets import Neighbour, _not_told, neighbours, odds_of_members
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
@@ -180,6 +182,27 @@ def test_declared_values_cost_their_deviations_whatever_the_noise() -> None:
         of_rows = whole - declared_cost(made, sets[0].residual).square
         variance = variance_along(made, sets[1], *sets)
         assert log_odds(made, *sets, COUNT) == pytest.approx(4.5 + 0.5 * of_rows / variance, rel=0.1)
+
+
+def test_a_rival_is_charged_for_its_declared_values_whatever_the_colour_of_the_noise() -> None:
+    """A value three deviations off costs 9 of twice the logarithm, where a row is worth a fifth of what it says.
+
+    What is as slow as the noise is seen 1 / c as well as in white noise; c is 5 for means of eight rows.
+    """
+    generator = np.random.default_rng(11)
+    slow = uniform_filter1d(generator.standard_normal((2, ROWS)), 8, axis=1, mode="wrap")
+    noise, slopes = slow[0] / np.std(slow[0]), 50.0 * (slow[1] / np.linalg.norm(slow[1]))[:, None]
+    made = problem(drawn(11)[0], noise)
+    made.whitener = whitener(slopes, np.zeros(1), 1.0)
+    residual = noise - slopes @ np.linalg.lstsq(slopes, noise, rcond=None)[0]
+    asked = made.whitener.applied(residual + slopes[:, 0] * 3.0 * (50.0**2 + 1.0) / 50.0**2)
+    mine, its = (Residuals(rows, noise, 0, declared_cost(made, rows)) for rows in (residual, asked))
+    beside = SimpleNamespace(evidence=SimpleNamespace(**vars(made.evidence[0]), judged_rows=np.ones(ROWS, bool)))
+    twice, distance = odds_and_distance(made, [beside], mine, its)
+    colour = (np.linalg.norm(its.fitted - mine.fitted) / distance) ** 2
+    of_rows = float(its.fitted @ its.fitted - mine.fitted @ mine.fitted) - its.declared.square
+    assert colour > 3
+    assert twice == pytest.approx(9.0 + of_rows / colour, rel=0.01)
 
 
 def test_two_effects_that_hide_each_other_are_found_together() -> None:

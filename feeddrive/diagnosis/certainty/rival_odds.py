@@ -1,11 +1,12 @@
 """How much the data speak for an effect against a rival in its place, and how far apart the two are.
 
-    Lambda = (|r_B|^2 - |r_A|^2) / c + 2 (k_B - k_A),    distance = |d| / sqrt(c)
+    Lambda = (|r_B|^2 - |r_A|^2) / c + z_B'z_B - z_A'z_A + 2 (k_B - k_A),    distance = |d| / sqrt(c)
     d = r_B - r_A,    c = d' (Gamma + M) d / d'd
 
 | symbol | meaning | unit |
 |---|---|---|
 | r_A, r_B | weighted residuals with the effect taken and with its rival, all others refitted; all recordings | 1 |
+| z_A, z_B | declared values over their tolerances, whose cost no noise lowers (`set_evidence.declared_cost`) | 1 |
 | k_A, k_B | coordinates fitted; each takes one of Lambda from the fitted data, and adds one on others (Akaike) | 1 |
 | Gamma | covariance of the residual, from its spectrum (`noise_colour`) | 1 |
 | M | what the model itself may miss, a bound of 95 % in every channel (`model_error_rows`) | 1 |
@@ -27,23 +28,32 @@ from feeddrive.diagnosis.judging.judge import Judged, error_series
 from feeddrive.diagnosis.likelihood.cross_validation import model_error_rows
 from feeddrive.diagnosis.likelihood.fit import Fit
 from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.set_evidence import DeclaredCost, declared_cost
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
 
 @dataclass(frozen=True)
 class Residuals:
-    """Weighted residuals of one set of effects: as fitted, and thinned on the judged samples; its coordinates."""
+    """Weighted residuals of one set of effects: as fitted, and thinned on the judged samples.
+
+    Attributes:
+        fitted: of the fitted samples, what declared values may do within their tolerances taken out, (m,).
+        judged: of the judged ones, (n,).
+        coordinates: that are fitted.
+        declared: what its declared values cost, which is part of the square of `fitted`.
+    """
 
     fitted: FloatArray
     judged: FloatArray
     coordinates: int
+    declared: DeclaredCost
 
     @classmethod
     def of(cls, problem: Problem, fitted: Fit, plants: Sequence[tuple[Plant, Judged]]) -> Residuals:
         """Residuals of a fit, with the plant that it gives for each judged recording."""
         judged = np.concatenate([_thinned_error(problem, plant, j) for plant, j in plants])
-        return cls(fitted.residual, judged, len(fitted.coordinates))
+        return cls(fitted.residual, judged, len(fitted.coordinates), declared_cost(problem, fitted.residual))
 
 
 def _thinned_error(problem: Problem, plant: Plant, judged: Judged) -> FloatArray:
@@ -81,5 +91,6 @@ def odds_and_distance(
     if not scatter > 0:
         return (0.0, 0.0) if square == 0 else (excess, float("inf"))
     colour = scatter / square
-    more = 2.0 * (its.coordinates - mine.coordinates)
+    excess -= its.declared.square - mine.declared.square
+    more = 2.0 * (its.declared.nats - mine.declared.nats + its.coordinates - mine.coordinates)
     return excess / colour + more, float(np.sqrt(square / colour))
