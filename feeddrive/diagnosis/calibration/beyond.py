@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -43,18 +43,17 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
 
     One does where no values within their tolerances explain the recordings, and some do that are all but its own, as
     the search has them and as they are placed by scatter. Of effects that are alike to the recordings the likeliest is
-    taken; `other_places` says the others. Where the values contradict each other whichever is free, they have run to
-    where slopes tell nothing of it, and each is asked from the declared machine (`_from_declared`).
+    taken; `other_places` says the others. Where the values contradict each other whichever is free, each is asked from
+    the declared machine on (`beyond_from_declared`).
 
     Returns:
         The problem without its values among those that are fitted, and the effect, from its likeliest values.
     """
+    begun = beyond_from_declared(problem, found)
+    if begun is not None:
+        return begun
     known = known_values(problem, found)
     gained = _gained(known)
-    if known is not None and gained and all(_contradict(known, places) for places in gained):
-        begun = _from_declared(problem, found, gained)
-        if begun is not None:
-            return begun
     if known is None or not any(gain > _sure(len(places)) for places, gain in gained.items()):
         return None
     placed, most = _gained(placed_by_scatter(problem, found)), max(gained.values())
@@ -76,22 +75,26 @@ def _contradict(known: Known, places: Sequence[int]) -> bool:
     return others > 0 and known.least(*places) > _sure(others)
 
 
-def _from_declared(
-    problem: Problem, found: Fit, groups: Iterable[tuple[int, ...]]
-) -> tuple[Problem, Effect] | None:  # fmt: skip
+def beyond_from_declared(problem: Problem, found: Fit) -> tuple[Problem, Effect] | None:
     """The effect beyond its tolerance whose machine, begun as declared, is the likeliest; None where none is asserted.
 
-    A value that is off by far draws all others along, and from where they have gone no step leads back. Free from the
-    beginning it needs none of them. It is asserted by what the recordings say at its machine, not where the values had
-    run to.
+    Asked where values contradict each other whichever is free: one that is off by far draws all others along, and from
+    where they have gone no step leads back. Free from the beginning it needs none of them. Each begins where the
+    slopes of the declared machine put it, the others within their tolerances, and those are fitted that leave least.
+    It is asserted by what the recordings say at its machine, not where the values had run to.
     """
-    known = problem.calibration
-    assert known is not None
+    known, told = problem.calibration, known_values(problem, found)
+    gained = _gained(told)
+    if known is None or told is None or not gained or not all(_contradict(told, places) for places in gained):
+        return None
     begun = with_new_slopes(at_declared(problem), found.effects)
     effects, variance = found.effects, known.variance
-    stepped = {places: cost(_with_free_values(begun, effects, places, 1), effects, variance) for places in groups}
+    slopes = known_values(begun, fit(begun, effects, iterations=0))
+    assert slopes is not None
+    starts = {places: _freed(begun.at_values(slopes.at_least(*places)), places) for places in gained}
+    stepped = {places: cost(there, effects, variance) for places, there in starts.items()}
     promising = sorted(stepped, key=stepped.__getitem__)[:TRIED]
-    machines = {places: _with_free_values(begun, effects, places) for places in promising}
+    machines = {places: _calibrated_freely(starts[places], effects) for places in promising}
     costs = {places: cost(there, effects, variance) for places, there in machines.items()}
     chosen = min(costs, key=costs.__getitem__)
     if costs[chosen] >= cost(problem, effects, variance):
@@ -211,13 +214,16 @@ def _share(share: float, before: FloatArray, step: FloatArray) -> float:
     return min(told, 1.0) if told > 0 else 1.0
 
 
-def _with_free_values(
-    problem: Problem, effects: Sequence[Effect], places: Sequence[int], passes: int = PASSES
-) -> Problem:  # fmt: skip
+def _with_free_values(problem: Problem, effects: Sequence[Effect], places: Sequence[int]) -> Problem:
     """The problem with some of its values free of their tolerances, all fitted in common steps.
 
     The others have stood in for them and go back with them: in turn, neither gets far.
     """
+    return _calibrated_freely(_freed(problem, places), effects)
+
+
+def _freed(problem: Problem, places: Sequence[int]) -> Problem:
+    """The problem with some of its values free of their tolerances, all where they are."""
     known = problem.calibration
     assert known is not None
     wider = np.ones(len(known.values))
@@ -229,8 +235,12 @@ def _with_free_values(
     slopes = {of: {name: rows * wider for name, rows in one.items()} for of, one in known.slopes.items()}
     more = known.number_slopes * wider if known.number_slopes.size else known.number_slopes
     free = Calibration(tuple(values), known.coordinates / wider, slopes, known.variance, more, known.taken)
-    problem = replace(problem, calibration=free)
-    for _ in range(passes):
+    return replace(problem, calibration=free)
+
+
+def _calibrated_freely(problem: Problem, effects: Sequence[Effect]) -> Problem:
+    """The problem with its values fitted in common steps until none moves, `PASSES` at most."""
+    for _ in range(PASSES):
         before = problem
         problem = recalibrated(problem, effects)
         if np.max(np.abs(moved(before, problem)), initial=0.0) < ENOUGH:

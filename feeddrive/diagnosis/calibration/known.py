@@ -111,6 +111,11 @@ class Known:
         """T of the values at the places that are free."""
         return _least(self.slopes, self.right_side, *_freed(self.ends, *free))[0]
 
+    def at_least(self, *free: int) -> FloatArray:
+        """Values as c, (k,), where T of the values at the places that are free is met."""
+        _, u = _least(self.slopes, self.right_side, *_freed(self.ends, *free))
+        return np.array([self.c(i, float(one)) for i, one in enumerate(u)])
+
     def interval(self, place: int) -> tuple[float, float]:
         """Ends of the 95 % interval of a value as c, all others within their tolerances."""
         others = np.arange(len(self.right_side)) != place

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, with_torque_scale
+from feeddrive.diagnosis.calibration.beyond import beyond_from_declared, beyond_tolerance, with_torque_scale
 from feeddrive.diagnosis.calibration.calibrate import (
     PASSES,
     at_declared,
@@ -148,6 +148,21 @@ def with_scale_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | Non
     """A set beside a scale of the torque that is free of its tolerance, where that explains all; else None."""
     freed = with_torque_scale(problem, found)
     return None if freed is None else refitted(freed, fit(freed, found.effects))
+
+
+def with_value_from_declared(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:
+    """A set with the declared value as an effect that is off by far, begun from the declared machine; else None.
+
+    Asked where values have gone beyond their tolerances: there they stand in for what is missing.
+    """
+    known = problem.calibration
+    if known is None or of_hours(problem) or np.max(np.abs(known.coordinates), initial=0.0) <= TOLERANCE:
+        return None
+    begun = beyond_from_declared(problem, found)
+    if begun is None:
+        return None
+    freed, effect = begun
+    return refitted(freed, fit(freed, (*found.effects, effect)))
 
 
 def with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit, Comparison] | None:

@@ -29,6 +29,7 @@ from feeddrive.diagnosis.finding.refitting import (
     where_friction_brakes,
     with_scale_beyond,
     with_value_beyond,
+    with_value_from_declared,
 )
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
@@ -39,7 +40,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.law_curve import has_curve
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, log_odds, odds_between
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, log_odds, odds_between
 from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.effects.base import Effect
 from feeddrive.effects.transmission.backlash import Backlash
@@ -128,8 +129,12 @@ def search(
             there, here = _refitted_with(other, begin[1]), after or (problem, found)
             if there is not None and odds_between(Standing(*here), Standing(*there), asked.now.count) > 0:
                 asked, near, after = other, other.near, there
+        far = _likelier_value(problem, found, after, asked.now.count)
+        if far is not None:
+            after, by = far
+            trials.append(Trial(number, after[1].effects[-1].name, by.gain, by.standard_error, True))
         rounds.append(tuple(attempt.for_the_record() for attempt in asked.now.attempts))
-        names = asked.taken.names if asked.taken is not None else []
+        names = asked.taken.names if asked.taken is not None and far is None else []
         trials += [_trial(number, attempt, attempt.name in names) for attempt in rounds[-1]]
         if after is not None:
             problem, found = in_steps_told(*after)
@@ -229,6 +234,19 @@ def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
             if odds > best and _level(opened, there) * LEVEL**2 < 1:
                 best, chosen = odds, (opened, without)
     return chosen
+
+
+def _likelier_value(
+    problem: Problem, found: Fit, after: tuple[Problem, Fit] | None, count: int
+) -> tuple[tuple[Problem, Fit], Comparison] | None:  # fmt: skip
+    """A set with a declared value that is off by far, and what it brings, where that is likelier than what a round took.
+
+    Such a value draws all others along, and names are then taken for what is left beside values that are not there.
+    """
+    far = with_value_from_declared(problem, found)
+    if far is None or odds_between(Standing(*(after or (problem, found))), Standing(*far), count) <= 0:
+        return None
+    return far, gain_between(Standing(problem, found), Standing(*far))
 
 
 def _curve_of_value(
