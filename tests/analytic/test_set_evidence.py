@@ -16,7 +16,7 @@ from scipy.ndimage import uniform_filter1d
 from feeddrive.diagnosis.calibration.calibration import whitener
 from feeddrive.diagnosis.certainty.rival_odds import Residuals, odds_and_distance
 from feeddrive.diagnosis.finding.attempt import Attempt
-from feeddrive.diagnosis.finding.sets import Neighbour, _not_told, neighbours, odds_of_members
+from feeddrive.diagnosis.finding.sets import Neighbour, _not_told, members_weighed, neighbours
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
 from feeddrive.diagnosis.likelihood.set_evidence import (
@@ -160,7 +160,7 @@ def test_effect_of_eight_deviations_is_in_and_one_of_two_is_not() -> None:
     for size, wanted in ((8.0, True), (2.0, False)):
         columns, measured = drawn(3, size)
         found = fitted((FIRST,), columns, measured)
-        assert (odds_of_members(problem(columns, measured), found, COUNT)[0] > 0) is wanted
+        assert (members_weighed(problem(columns, measured), found, COUNT)[0].gain < 0) is wanted
 
 
 def test_declared_values_cost_their_deviations_whatever_the_noise() -> None:
@@ -234,7 +234,7 @@ def test_what_one_block_alone_shows_is_no_effect() -> None:
         columns[name] = np.sign(np.sin(2 * np.pi * np.arange(ROWS) / 700))
     measured = measured + np.where((np.arange(ROWS) >= 100) & (np.arange(ROWS) < 150), 6.0, 0.0)
     found = fitted((FIRST,), columns, measured)
-    assert odds_of_members(problem(columns, measured), found, COUNT)[0] < 0
+    assert members_weighed(problem(columns, measured), found, COUNT)[0].gain > 0
 
 
 def test_what_a_set_declines_to_predict_is_as_likely_as_a_normal_distribution_of_its_error() -> None:

@@ -2,15 +2,17 @@
 
     odds(m) = 1 / (Σ E(without m) / E + Σ E(rival in the place of m) / E)
 
-with the evidence E of `likelihood.set_evidence`. What the data say for a further effect grows with the time that is
-recorded, what it costs does not: so a recording of the same kind that settles it is so many times as long.
+with the evidence E of `likelihood.set_evidence`, each set beside the declared values that suit it best: a set without a
+name has values of its own, which take over some of what the name explained. What the data say for a further effect
+grows with the time that is recorded, what it costs does not: so a recording of the same kind that settles it is so many
+times as long.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import logsumexp
@@ -18,10 +20,13 @@ from scipy.special import logsumexp
 from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival
 from feeddrive.diagnosis.finding.likelier import Near
+from feeddrive.diagnosis.finding.refitting import at_rest
 from feeddrive.diagnosis.finding.search import Search
-from feeddrive.diagnosis.finding.sets import members_weighed, odds_of_members
+from feeddrive.diagnosis.finding.sets import SURE, members_weighed
 from feeddrive.diagnosis.judging.result import PossibleEffect
-from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
 from feeddrive.diagnosis.recordings.recordings import is_shift, without_shifts
 
 OPEN = 0.5 * AGAINST
@@ -38,11 +43,10 @@ def odds_for(found: Search, rivals: Sequence[Sequence[Rival]]) -> tuple[float, .
         found: what the search took.
         rivals: per effect, those that do as well in its place.
     """
-    count = len(found.problem.predictor.candidates)
-    members = odds_of_members(found.problem, found.fit, count)[: len(without_shifts(found.fit.effects))]
+    members = _members_at_rest(found.problem, found.fit, found.count)[: len(without_shifts(found.fit.effects))]
     result = []
-    for own, alike in zip(members, rivals, strict=False):
-        against = float(logsumexp([-own, *(-0.5 * rival.odds for rival in alike)]))
+    for one, alike in zip(members, rivals, strict=False):
+        against = float(logsumexp([one.gain, *(-0.5 * rival.odds for rival in alike)]))
         result.append(float(np.exp(np.clip(-against, -math.log(MOST), math.log(MOST)))))
     return tuple(result)
 
@@ -57,20 +61,54 @@ def asserted(found: Search) -> Search:
     Args:
         found: what the search took, judged on data not fitted.
     """
-    count = len(found.problem.predictor.candidates)
     if any(is_shift(effect) for effect in found.fit.effects):
         return found  # what one recording has otherwise belongs to the effect taken
     while found.fit.effects:
-        members = members_weighed(found.problem, found.fit, count)
+        members = _members_at_rest(found.problem, found.fit, found.count)
         place = max(range(len(members)), key=lambda i: members[i].gain)
-        if members[place].gain <= -OPEN:
+        one = members[place]
+        if one.gain <= -OPEN or one.without is None:
             return found
-        gone = found.fit.effects[place]
-        rest = [effect for i, effect in enumerate(found.fit.effects) if i != place]
-        near = Near(gone.name, -members[place].gain, -members[place].speaks)
-        problem = without_effects(found.problem, [gone], rest)
-        found = replace(found, problem=problem, fit=fit(problem, rest), near=(near, *found.near))
+        near = Near(found.fit.effects[place].name, -one.gain, -one.speaks)
+        found = replace(found, problem=one.without.problem, fit=one.without.fit, near=(near, *found.near))
     return found
+
+
+@dataclass(frozen=True)
+class _Member:
+    """A member of a set, and the set without it.
+
+    Attributes:
+        gain: logarithm of the odds for the set without it.
+        speaks: part of it that grows with the time recorded.
+        without: that set, its declared values at rest; None for a member that is sure.
+    """
+
+    gain: float
+    speaks: float
+    without: Standing | None
+
+
+def _members_at_rest(problem: Problem, found: Fit, count: int) -> tuple[_Member, ...]:
+    """Per member of a set, the set without it; both with their declared values at rest where it is not sure.
+
+    Slopes say of the values what holds near the set at hand: that is enough of a member that is sure (`SURE`).
+    """
+    members = members_weighed(problem, found, count)
+    if all(one.gain <= -SURE for one in members):
+        return tuple(_Member(one.gain, one.speaks, None) for one in members)
+    stands = Standing(*at_rest(problem, found))
+    result = []
+    for place, one in enumerate(members):
+        if one.gain <= -SURE:
+            result.append(_Member(one.gain, one.speaks, None))
+            continue
+        rest = [effect for i, effect in enumerate(found.effects) if i != place]
+        there = without_effects(problem, [found.effects[place]], rest)
+        without = Standing(*at_rest(there, fit(there, rest)))
+        gain = odds_between(stands, without, count)
+        result.append(_Member(gain, min(gain - one.gain + one.speaks, 0.0), without))
+    return tuple(result)
 
 
 def possible_effects(found: Search, rivals: Sequence[Sequence[Rival]]) -> tuple[PossibleEffect, ...]:

@@ -68,6 +68,7 @@ class Search:
         impossible: candidate to why the recordings cannot show it.
         near: effects that may come beside those found, the likeliest first.
         begun: problem and fit that the search began with; None for one that is made of a fit.
+        tried: most candidates and starts that a round tried; 0 where there was none.
         asked: what was asked of the judged recordings beside it and beside sets made of it (`recordings.compared`).
     """
 
@@ -78,7 +79,13 @@ class Search:
     impossible: dict[str, str]
     near: tuple[Near, ...] = ()
     begun: tuple[Problem, Fit] | None = None
+    tried: int = 0
     asked: list[Any] = field(default_factory=list, compare=False)
+
+    @property
+    def count(self) -> int:
+        """Candidates and starts that were tried, K of the prior of sets."""
+        return max(self.tried, len(self.problem.predictor.candidates))
 
 
 class _Asked(NamedTuple):
@@ -112,12 +119,13 @@ def search(
     impossible: dict[str, str] = {**denied}
     met: set[tuple[tuple[str, str, str], ...]] = set()
     near: tuple[Near, ...] = ()
+    tried = start.tried if start is not None else 0
     problem, found = balanced(problem, found)
     while len(rounds) < MOST_ROUNDS and not (rounds and problem.budget.skips("further rounds of the search")):
         number = len(rounds) + 1
         progress(f"round {number}: {len(found.effects)} effects so far")
         asked = _asked(problem, found, impossible, denied, number)
-        near = asked.near
+        near, tried = asked.near, max(tried, asked.now.count)
         unnamed = _of_no_name(problem, found, asked)
         if unnamed is not None:
             problem, found = refitted(*unnamed)
@@ -173,7 +181,8 @@ def search(
             break
     problem, found, small = _ended(problem, found)
     impossible |= dict.fromkeys((one.name for one in small), SMALL)
-    return Search(problem, with_usual_sizes(problem, found), tuple(trials), tuple(rounds), impossible, near, begun)
+    found = with_usual_sizes(problem, found)
+    return Search(problem, found, tuple(trials), tuple(rounds), impossible, near, begun, tried)
 
 
 def _asked(
@@ -239,7 +248,7 @@ def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
 def _likelier_value(
     problem: Problem, found: Fit, after: tuple[Problem, Fit] | None, count: int
 ) -> tuple[tuple[Problem, Fit], Comparison] | None:  # fmt: skip
-    """A set with a declared value that is off by far, and what it brings, where that is likelier than what a round took.
+    """A set with a declared value that is off by far, and what it brings, where that is likelier than a round's.
 
     Such a value draws all others along, and names are then taken for what is left beside values that are not there.
     """

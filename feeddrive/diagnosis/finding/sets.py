@@ -156,11 +156,6 @@ def _that_predicts_more(problem: Problem, found: Fit, place: int) -> Standing | 
     return Standing(wide, fit(wide, rest, iterations=ITERATIONS)) if wide is not problem else None
 
 
-def odds_of_members(problem: Problem, found: Fit, count: int) -> tuple[float, ...]:
-    """Logarithm of the odds for each member of a set against the set without it; arguments as `members_weighed`."""
-    return tuple(-one.gain for one in members_weighed(problem, found, count))
-
-
 def odds_of_member(problem: Problem, found: Fit, place: int, count: int) -> float:
     """Logarithm of the odds for one member; other arguments as `members_weighed`."""
     return -_without(_Columns(problem, found, (), count), place).gain
