@@ -11,6 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
@@ -291,7 +293,11 @@ def _refitted_with(asked: _Asked, found: Fit) -> tuple[Problem, Fit] | None:
 
 
 def _ended(problem: Problem, found: Fit) -> tuple[Problem, Fit, list[Effect]]:
-    """The set that is left at the end, all that is left counting again; and effects too small to be reported."""
+    """The set that is left at the end, all that is left counting again; and effects too small to be reported.
+
+    One that is small on this machine is reported where the error of a channel shows it: a fine scale sees a part that
+    shakes which is a ten-thousandth of the table.
+    """
     there = in_steps_told(*refitted(problem, fit(problem, found.effects)))
     problem, found = where_friction_brakes(*at_rest(*there))
     closed = with_curves_of(problem, ())  # names are weighed, and rivals tried, against all that is left
@@ -300,9 +306,23 @@ def _ended(problem: Problem, found: Fit) -> tuple[Problem, Fit, list[Effect]]:
     small = [one for one in found.effects if not is_material_here(one, problem)]
     if small:
         rest = _without(found, small)
-        problem = without_effects(problem, small, rest)
-        found = fit(problem, rest)
-    return problem, found, small
+        fewer = without_effects(problem, small, rest)
+        without = fit(fewer, rest)
+        if not _is_seen(Standing(fewer, without), Standing(problem, found)):
+            return fewer, without, small
+    return problem, found, []
+
+
+def _is_seen(without: Standing, found: Standing) -> bool:
+    """Whether what is left of a channel is lower with a set than without some of it, by more than levels are known."""
+    pairs = zip(
+        without.problem.by_channel(without.fit.residual), found.problem.by_channel(found.fit.residual), strict=True
+    )
+    return any(
+        float(np.mean(rows**2)) < LEVEL**2 * float(np.mean(before[name] ** 2))
+        for before, after in pairs
+        for name, rows in after.items()
+    )
 
 
 def _members(found: Fit) -> tuple[tuple[str, str, str], ...]:

@@ -21,7 +21,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize
 
-from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.effects.base import Effect
@@ -62,7 +61,7 @@ def structural_mode(scene: Scene) -> list[list[Effect]]:
     start = StructuralMode.of(mass=max(mass, 1e-6), frequency=f, damping=zeta)
     better = share - payload > LEAST_SHARE * (1 - payload)
     shows = better or (share > LEAST_SHARE and resonates_within(start, seen.edge))
-    return [[start]] if shows and is_material(start, scene.plant) else []
+    return [[start]] if shows else []
 
 
 def _polished(seen: _Spectra, f: float, zeta: float) -> tuple[tuple[float, float], float, float]:
