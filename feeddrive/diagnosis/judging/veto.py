@@ -5,7 +5,8 @@ An effect that the search took is not reported as found where
 - a value of it ran to the end of what is physical: the end is no estimate;
 - it does not lower the error on the judged data; where they could hardly show it, or it lowers it by no more than the
   gain's scatter, the gain on blocks left out of the fit must be three times its scatter instead;
-- the intervals of all its sizes hold the absent effect (no amplitude, a factor of one);
+- the intervals of all its sizes hold the absent effect (no amplitude, a factor of one), or, where it says that a
+  declared value is other, that value within its tolerance;
 - with it friction would push the axis, which no plant file may hold, and without it not;
 - a channel is predicted worse with what was found than as declared, by more than the scatter of its rms, and this
   effect worsens it most.
@@ -31,7 +32,7 @@ import numpy as np
 from scipy.special import chdtri
 
 from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
-from feeddrive.diagnosis.calibration.stated import without_effects
+from feeddrive.diagnosis.calibration.stated import is_within_tolerance, without_effects
 from feeddrive.diagnosis.certainty.one_sided import one_sided
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
@@ -143,8 +144,9 @@ def _first_denied(found: Search, judged: Sequence[Judged], spared: Collection[st
         idle = ["" if stood else reason for reason, stood in zip(idle, stands, strict=True)]
         worst = _worst_channel(other.problem, other.allowed)
     at_end, around_none = ends_reached(problem, found.fit), sizes_around_none(problem, found.fit)
+    as_declared = values_within_tolerance(problem, found.fit)
     pushing = friction_that_pushes(problem, effects)
-    reasons = [at_end[i] or idle[i] or around_none[i] or pushing[i] for i in named]
+    reasons = [at_end[i] or idle[i] or around_none[i] or as_declared[i] or pushing[i] for i in named]
     denied = [
         Denied(i, shares[i].comparison.gain, reason)
         for i, reason in enumerate(reasons)
@@ -290,6 +292,24 @@ def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
         result.append("its interval holds no effect at all" if denied else "")
         at += count
     return result
+
+
+def values_within_tolerance(problem: Problem, fitted: Fit) -> list[str]:
+    """Per effect, a sentence where its 95 % intervals hold declared values within their tolerances; else empty.
+
+    A declared value is called other only beyond its tolerance, and so is its interval.
+    """
+    if all(is_within_tolerance(effect, problem.plant) is None for effect in fitted.effects):
+        return [""] * len(fitted.effects)
+    absent, _ = absent_coordinates(fitted.effects, problem.plant)
+    half = np.sqrt(np.diag(certainty(problem, fitted).half_covariance))
+    nearest = fitted.coordinates - np.clip(fitted.coordinates - absent, -half, half)
+    known = np.where(np.isfinite(nearest), nearest, fitted.coordinates)
+    ends = write_coordinates(fitted.effects, problem.plant, known)
+    return [
+        "its interval holds the declared value within its tolerance" if is_within_tolerance(end, problem.plant) else ""
+        for end in ends
+    ]
 
 
 def _is_not_none(covariance: FloatArray, beyond: FloatArray, half: FloatArray, group: IntegerArray) -> bool:

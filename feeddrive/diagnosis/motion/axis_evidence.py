@@ -237,7 +237,7 @@ class AxisEvidence(Evidence):
         """The evidence as it is where the same rows have other times: what changes is the motion between them."""
         angle = recording["motor_angle"]
         if self.gains:
-            angle = known_motion_of(angle, quantisation_step(angle), recording.sample_time)[0]
+            angle = known_motion_of(angle, quantisation_step(angle), recording.sample_time)
             angle = angle if self.told is None else angle + self.told
         motion = motor_motion(from_zero(recording), angle).timed(clock(recording))
         return replace(self, recording=recording, motion=replace(motion, every=self.motion.every))

@@ -31,7 +31,6 @@ error of the motion it is,
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -41,6 +40,18 @@ from scipy.ndimage import uniform_filter
 from scipy.signal.windows import hann
 
 from feeddrive.diagnosis.motion.band import END_CUT, Band
+from feeddrive.diagnosis.motion.expected_motion import (
+    ALONG_FREQUENCY,
+    ALONG_TIME,
+    DRAWS,
+    WINDOW,
+    ExpectedMotion,
+    added,
+    expected_motion,
+    frames_of,
+    spectra_of,
+    window_of,
+)
 from feeddrive.diagnosis.motion.told_motion import teller
 from feeddrive.diagnosis.motion.unsure_motion import left_out, unsure_motions, without_share
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of
@@ -50,33 +61,11 @@ from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.flaws import quantisation_step
 from feeddrive.simulate.driven import LoadMotion, MotorMotion, motor_motions, simulate_driven
-from feeddrive.typing import BoolArray, ComplexArray, FloatArray
-
-WINDOW = 0.128
-"""Length of a window [s]: motion keeps its spectrum that long, and 8 Hz are distinguished from the next."""
-
-ALONG_FREQUENCY, ALONG_TIME = 5, 3
-"""Neighbours that tell where there is motion: 15 values, of which those of overlapping windows are half independent,
-are within a third of the mean square of noise."""
-
-SHOWN = 1 + 2 / math.sqrt(10)
-"""P over N from which there is motion: two standard deviations of the mean of ten independent squares of noise."""
-
-EVEN = math.log(1000)
-"""Square of the mean phasor between rows, over that of phases at random, from which steps make lines: that square is
-exponential, and one window in a thousand reaches so much by chance. An angle that passes many steps a row, unevenly,
-makes white ones (Widrow & Kollár, Quantization Noise (2008)), in which peaks of a draw are of that draw alone."""
-
-SURE_MOTION = 8.0
-"""Frequency [Hz] below which the angle is motion: an axis moves many steps within a window."""
-
+from feeddrive.typing import FloatArray
 
 MATERIAL = 0.1
 """Power that the encoder adds to a channel at any frequency of the band, over its sensor's, from which it is carried:
 errors of what shows there alone, such as a damping at its resonance, grow by 5 %."""
-
-DRAWS = 4
-"""Errors that are drawn: with `SMOOTHED` neighbours on either side, a spectrum is known to a fifth."""
 
 AT_ONCE = 8
 """Motions whose splines are made together: one alone takes three times as long, and more take room for nothing."""
@@ -134,9 +123,9 @@ class Told:
 
     def uncertain(self, part: FloatArray) -> FloatArray:
         """Of a part of a motion that may be error, (n,), what is error in its own window."""
-        window = _window(self.sample_time)
-        spectra = np.fft.rfft(_frames(part, len(window)) * window, axis=1)
-        return _added(self.there * spectra, window, len(part))
+        window = window_of(self.sample_time)
+        spectra = np.fft.rfft(frames_of(part, len(window)) * window, axis=1)
+        return added(self.there * spectra, window, len(part))
 
 
 def encoder_error(
@@ -160,9 +149,10 @@ def encoder_error(
     if step <= 0 or round(WINDOW / sample_time) < 16 or len(angle) < 4 * round(WINDOW / sample_time):
         return None
     time: FloatArray = np.arange(len(angle), dtype=np.float64) * sample_time
-    expected, known = known_motion_of(angle, step, sample_time)
-    share = known.share
-    errors = [drawn_error(expected, step, sample_time, draw, known) for draw in range(DRAWS)]
+    seen = expected_motion(angle, step, sample_time)
+    known = told_of(seen)
+    expected, share = known.known(seen.angle), known.share
+    errors = [drawn_error(seen, draw, known) for draw in range(DRAWS)]
     told: FloatArray = np.zeros(len(angle))
     try:
         if acting is not None and not proportional and np.all(np.isfinite(acting)):
@@ -211,8 +201,8 @@ def _runs(plant: Plant, time: FloatArray, angles: Iterator[FloatArray]) -> Itera
                 continue
 
 
-def known_motion_of(angle: FloatArray, step: float, sample_time: float) -> tuple[FloatArray, Told]:
-    """The motion that is expected, without what is more error than motion, (n,), and how much of it is told.
+def known_motion_of(angle: FloatArray, step: float, sample_time: float) -> FloatArray:
+    """The motion that is expected, without what is more error than motion, (n,).
 
     Args:
         angle: as the encoder gives it, (n,).
@@ -220,10 +210,14 @@ def known_motion_of(angle: FloatArray, step: float, sample_time: float) -> tuple
         sample_time: of the rows [s].
     """
     expected = expected_motion(angle, step, sample_time)
-    errors = [drawn_error(expected, step, sample_time, draw) for draw in range(DRAWS)]
-    share = _share_of_error(expected, errors, sample_time)
-    known = Told(share, _error_in_windows(expected, errors, share, sample_time), sample_time)
-    return known.known(expected), known
+    return told_of(expected).known(expected.angle)
+
+
+def told_of(expected: ExpectedMotion) -> Told:
+    """What of an expected motion is motion."""
+    errors, sample_time = [drawn_error(expected, draw) for draw in range(DRAWS)], expected.sample_time
+    share = _share_of_error(expected.angle, errors, sample_time)
+    return Told(share, _error_in_windows(expected.angle, errors, share, sample_time), sample_time)
 
 
 def _error_in_windows(
@@ -233,9 +227,9 @@ def _error_in_windows(
 
     Below two periods a window it is 1: a window does not tell one frequency from the next.
     """
-    window = _window(sample_time)
-    power = uniform_filter(np.abs(_spectra(expected, window)) ** 2, (ALONG_TIME, ALONG_FREQUENCY))
-    squares = np.mean([np.abs(_spectra(error, window)) ** 2 for error in errors], axis=0)
+    window = window_of(sample_time)
+    power = uniform_filter(np.abs(spectra_of(expected, window)) ** 2, (ALONG_TIME, ALONG_FREQUENCY))
+    squares = np.mean([np.abs(spectra_of(error, window)) ** 2 for error in errors], axis=0)
     wrong = uniform_filter(squares, (ALONG_TIME, ALONG_FREQUENCY))
     local = np.minimum(np.divide(wrong, power, out=np.ones_like(power), where=power > 0), 1.0)
     frequency = np.fft.rfftfreq(len(window), sample_time)
@@ -243,11 +237,6 @@ def _error_in_windows(
     there: FloatArray = np.minimum(left_out(local) / np.where(of_all > 0, of_all, np.inf), 1.0)
     there[:, frequency < 2 / WINDOW] = 1.0
     return there
-
-
-def _window(sample_time: float) -> FloatArray:
-    """Window of the spectra: squares of windows that overlap by half add up to one, (m,)."""
-    return np.asarray(np.sqrt(hann(2 * round(0.5 * WINDOW / sample_time), sym=False)))
 
 
 def _answer(run: LoadMotion, name: str) -> FloatArray:
@@ -291,86 +280,14 @@ def _density(series: Sequence[FloatArray], sample_time: float) -> tuple[FloatArr
     return frequency, density
 
 
-def drawn_error(
-    expected: FloatArray, step: float, sample_time: float, draw: int, known: Told | None = None
-) -> FloatArray:
-    """The error that the expected motion would have if it were the true one, measured by the same encoder, (n,) [rad].
+def drawn_error(expected: ExpectedMotion, draw: int, known: Told | None = None) -> FloatArray:
+    """The error of the expected motion if a likely one were the true one, measured by the same encoder, (n,) [rad].
 
-    Slow motion and rest make an error that is slow: it is drawn by measuring, not as white noise. Draws differ in where
-    the steps lie: `draw` is the seed of that. Where a share of the motion is left out (`Told`), it is of both.
+    Slow motion and rest make an error that is slow: it is drawn by measuring, not as white noise. Draws differ in what
+    is not told of the motion and in where the steps lie: `draw` is the seed of both. Where a share of the motion is
+    left out (`Told`), it is of what would be expected.
     """
-    true = expected + step * np.random.default_rng(draw).uniform()
-    measured = step * np.round(true / step)
-    seen = expected_motion(measured, step, sample_time)
+    step = expected.step
+    true = expected.likely(draw) + step * np.random.default_rng(draw).uniform()
+    seen = expected_motion(step * np.round(true / step), step, expected.sample_time).angle
     return (seen if known is None else known.known(seen)) - true
-
-
-def expected_motion(angle: FloatArray, step: float, sample_time: float) -> FloatArray:
-    """The motor angle that is expected given one measured in steps.
-
-    Args:
-        angle: as measured [rad], shape (n,).
-        step: of the encoder [rad].
-        sample_time: [s].
-
-    Returns:
-        Angle [rad], shape (n,).
-    """
-    window = _window(sample_time)
-    length = len(window)
-    omega = 2 * np.pi * np.arange(length // 2 + 1) / length
-    difference = (2 * np.sin(0.5 * omega)) ** 2
-    spectra = _spectra(angle, window)
-    white = step**2 / 12 * float(window @ window) * difference**2
-
-    def without(noise: FloatArray) -> FloatArray:
-        over_noise = np.abs(spectra) ** 2 / np.where(noise > 0, noise, 1.0)
-        moving = uniform_filter(over_noise, (ALONG_TIME, ALONG_FREQUENCY)) > SHOWN
-        error = np.where(moving, 1 / np.maximum(uniform_filter(over_noise, (ALONG_TIME, 1)), 1.0), 1.0)
-        error[:, omega < 2 * math.pi * SURE_MOTION * sample_time] = 0.0
-        # minus the second difference, summed twice, is the angle
-        return angle - _added(-error * spectra / np.where(difference > 0, difference, 1.0), window, len(angle))
-
-    first = without(white)
-    made = np.mean([np.abs(_spectra(_steps_of(first, step, draw), window)) ** 2 for draw in range(DRAWS)], axis=0)
-    made = uniform_filter(made, (ALONG_TIME, 1))
-    lines = (made > SHOWN * white) & _keeps_step(first / step, window**2)[:, None]
-    return without(np.where(lines, made, white))
-
-
-def _keeps_step(places: FloatArray, weights: FloatArray) -> BoolArray:
-    """In which windows an angle, (n,) [steps], passes the steps evenly from row to row, (windows,)."""
-    turns = np.exp(2j * np.pi * np.diff(places, prepend=places[:1]))
-    coherence = np.abs(_frames(turns, len(weights)) @ weights) ** 2
-    return np.asarray(coherence > EVEN * float(weights @ weights))
-
-
-def _steps_of(angle: FloatArray, step: float, draw: int) -> FloatArray:
-    """What an encoder adds to an angle, (n,): `draw` is the seed of where its steps lie."""
-    at = angle + step * np.random.default_rng(draw).uniform()
-    return np.asarray(step * np.round(at / step) - at)
-
-
-def _spectra(angle: FloatArray, window: FloatArray) -> ComplexArray:
-    """Spectra of the second difference of an angle in windows that overlap by half, (windows, frequencies)."""
-    frames = _frames(np.concatenate([[0.0], np.diff(angle, 2), [0.0]]), len(window))
-    return np.asarray(np.fft.rfft(frames * window, axis=1))
-
-
-def _frames(series: FloatArray, length: int) -> FloatArray:
-    """Windows of a series that overlap by half, (count, length)."""
-    half = length // 2
-    padded = np.concatenate([np.zeros(half), series, np.zeros(length + (-len(series)) % half)])
-    frames: FloatArray = np.lib.stride_tricks.sliding_window_view(padded, length)[::half]
-    return frames
-
-
-def _added(spectra: ComplexArray, window: FloatArray, count: int) -> FloatArray:
-    """The series of so many samples that overlapping windows with these spectra add up to."""
-    length = len(window)
-    half = length // 2
-    parts = np.fft.irfft(spectra, length, axis=1) * window
-    total = np.zeros((len(parts) + 1) * half)
-    for i, part in enumerate(parts):
-        total[i * half : i * half + length] += part
-    return total[half : half + count]

@@ -140,7 +140,9 @@ def beyond_its_constant(problem: Problem, found: Fit) -> tuple[Quality, ...]:
             continue
         if value.widened > 1 or known.least() - known.least(place) > SURE**2:
             one, declared = calibrated_list(problem, found)[place], value.declared
-            return (scaled(declared / one.number, (declared / one.ci95[1], declared / one.ci95[0])),)
+            low, high = (end / declared for end in one.ci95)
+            if low > 1 + value.tolerance or high < 1 / (1 + value.tolerance):
+                return (scaled(declared / one.number, (1 / high, 1 / low)),)
     return ()
 
 
