@@ -16,7 +16,7 @@ from feeddrive.diagnosis.certainty.correlation import correlation
 from feeddrive.diagnosis.certainty.inclusion import asserted, odds_for, possible_effects
 from feeddrive.diagnosis.certainty.next_experiment import next_experiments
 from feeddrive.diagnosis.certainty.one_sided import all_intervals
-from feeddrive.diagnosis.certainty.preferred import judged_apart, with_the_preferred
+from feeddrive.diagnosis.certainty.preferred import judged_apart, judged_as_good, with_the_preferred
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.denied_again import settled_names
@@ -271,8 +271,8 @@ def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[
     found, judged = settled_names(found, judged, judge, progress)
     rivals = rivals_of(found, judged)
     preferred, ranked = with_the_preferred(found, rivals)
-    if preferred is not found:
-        put_in = judge(preferred)
+    put_in = judged if preferred is found else judge(preferred)
+    if preferred is not found and judged_as_good(found.problem, judged, put_in):
         new = _names(preferred) - _names(found)
         kept, after = without_denied(
             preferred, put_in, judge, () if judged_apart(found.problem, judged, put_in) else new

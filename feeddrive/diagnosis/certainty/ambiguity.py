@@ -224,12 +224,13 @@ def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect
         swapped = there = fit(problem, effects, iterations=ITERATIONS)
         if beside_value and _is_idle(problem, swapped, place):
             return None
-        beyond = 0.0
+        beyond, common = 0.0, problem
         if not same_samples(problem, found.problem):  # without the free play of what was taken
-            there = fit(commonly_predicted(problem, found.problem), swapped.effects, iterations=ITERATIONS)
+            common = commonly_predicted(problem, found.problem)
+            there = fit(common, swapped.effects, iterations=ITERATIONS)
             level = min(float(mine.fitted @ mine.fitted), there.squared_error) / max(len(mine.fitted), 1)
             beyond = excess_beyond(Standing(problem, swapped), Standing(found.problem, found.fit), level)
-        its = Residuals.of(problem, there, [(j.with_effects(problem, there.effects), j) for j in judged])
+        its = Residuals.of(common, there, [(j.with_effects(problem, there.effects), j) for j in judged])
     except InputError:
         return None
     if not np.all(np.isfinite(its.fitted)):

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival
+from feeddrive.diagnosis.certainty.ambiguity import AGAINST, SAME_ERROR, Rival
 from feeddrive.diagnosis.finding.materiality import is_material_here
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, judged_residual
@@ -19,6 +19,7 @@ from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.recordings.recordings import is_shift
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
+from feeddrive.typing import FloatArray, IntegerArray
 
 
 def with_the_preferred(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Search, list[list[Rival]]]:
@@ -48,16 +49,41 @@ def judged_apart(problem: Problem, taken: Sequence[Judged], other: Sequence[Judg
         problem: of what was taken.
         taken, other: the same recordings, with the one and with the other in.
     """
-    mine, blocks = judged_residual(problem, [(one.after, one.evidence) for one in taken])
-    # on the samples of what was taken: a free play would leave the two with different ones
-    its, _ = judged_residual(problem, [(two.after, one.evidence) for one, two in zip(taken, other, strict=True)])
+    mine, its, blocks = _residuals(problem, taken, other)
     gain = compare_left_out(its, mine, blocks, 0.0)
     return gain.gain > SCATTER * gain.standard_error
 
 
+def judged_as_good(problem: Problem, taken: Sequence[Judged], other: Sequence[Judged]) -> bool:
+    """Whether what would take a place leaves the same error on data not fitted, as a rival must (`SAME_ERROR`).
+
+    Args:
+        problem: of what was taken.
+        taken, other: the same recordings, with the one and with the other in, each fitted to its end.
+    """
+    mine, its, _ = _residuals(problem, taken, other)
+    return float(its @ its) <= SAME_ERROR**2 * float(mine @ mine)
+
+
+def _residuals(
+    problem: Problem, taken: Sequence[Judged], other: Sequence[Judged]
+) -> tuple[FloatArray, FloatArray, IntegerArray]:
+    """Judged residuals of what was taken and of another, (m,) each, and their blocks, on the samples of the first.
+
+    A free play would leave the two with different ones.
+    """
+    mine, blocks = judged_residual(problem, [(one.after, one.evidence) for one in taken])
+    its, _ = judged_residual(problem, [(two.after, one.evidence) for one, two in zip(taken, other, strict=True)])
+    return mine, its, blocks
+
+
 def _preferred(problem: Problem, effect: Effect, alike: Sequence[Rival]) -> Rival | None:
-    """The rival for which the data speak by as much as refuses one, else the simplest that is simpler."""
-    material = [rival for rival in alike if is_material_here(rival.effect, problem)]
+    """The rival for which the data speak by as much as refuses one, else the simplest that is simpler.
+
+    None goes first for which fitted data speak while those that are not fitted are met worse.
+    """
+    borne_out = [rival for rival in alike if rival.odds >= -AGAINST or rival.error_ratio <= 1]
+    material = [rival for rival in borne_out if is_material_here(rival.effect, problem)]
     likeliest = min(material, key=lambda rival: rival.odds, default=None)
     if likeliest is not None and likeliest.odds < -AGAINST:
         return likeliest
