@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.motion import encoder_error
+from feeddrive.diagnosis.motion import expected_motion as expecting
 from feeddrive.diagnosis.motion.band import Band
-from feeddrive.diagnosis.motion.encoder_error import drawn_error, expected_motion
+from feeddrive.diagnosis.motion.encoder_error import drawn_error
+from feeddrive.diagnosis.motion.expected_motion import expected_motion
 from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.files import find_plant
 from feeddrive.plant.file.plant_file import read_plant
@@ -43,7 +44,7 @@ def vibration_slope(given: FloatArray) -> float:
 
 def test_expected_motion_draws_nothing_towards_none() -> None:
     measured = np.round(motion() / STEP) * STEP
-    expected = expected_motion(measured, STEP, 1 / RATE)
+    expected = expected_motion(measured, STEP, 1 / RATE).angle
     # the steps as they are take away a fifth of a mass and more; less than half of that is left
     assert vibration_slope(measured) < 0.8
     assert vibration_slope(expected) > 0.9
@@ -51,7 +52,7 @@ def test_expected_motion_draws_nothing_towards_none() -> None:
 
 def test_error_of_the_acceleration_falls() -> None:
     measured = np.round(motion() / STEP) * STEP
-    expected = expected_motion(measured, STEP, 1 / RATE)
+    expected = expected_motion(measured, STEP, 1 / RATE).angle
     true = acceleration(motion())
     assert np.std(acceleration(expected) - true) < 0.5 * np.std(acceleration(measured) - true)
 
@@ -61,10 +62,38 @@ def test_drawn_error_is_of_the_size_of_what_is_left() -> None:
     for place in range(4):  # a stroke that turns on an edge of a step is told better than one between two
         at = motion() + STEP * place / 4
         expected = expected_motion(np.round(at / STEP) * STEP, STEP, 1 / RATE)
-        left.append(np.mean((acceleration(expected) - true) ** 2))
-        drawn.append(np.mean(acceleration(drawn_error(expected, STEP, 1 / RATE, place)) ** 2))
-    # what is drawn from holds an error already, so that a draw has more; the vibration lost below the steps is no part
+        left.append(np.mean((acceleration(expected.angle) - true) ** 2))
+        drawn.append(np.mean(acceleration(drawn_error(expected, place)) ** 2))
+    # what is drawn from holds an error already, so that a draw has more
     assert np.sqrt(np.mean(left)) < np.sqrt(np.mean(drawn)) < 2 * np.sqrt(np.mean(left))
+
+
+def test_error_of_a_motion_below_the_steps_is_drawn_as_large_as_it_is() -> None:
+    """A fifth of the steps' power from 100 to 300 Hz: most is lost in what is expected, and what has lost it before
+    would lose no more. Of that motion alone draws have half of the error."""
+    rate = 8000.0
+    time = np.arange(int(6 * rate)) / rate
+    hertz = np.fft.rfftfreq(len(time), 1 / rate)
+    inside = (hertz > 100) & (hertz < 300)
+    noise = np.random.default_rng(4).standard_normal(len(time))
+    noise = np.fft.irfft(np.where(inside, np.fft.rfft(noise), 0), len(time))
+    angle = 40 * np.sin(2 * np.pi * 0.4 * time) + 0.03 * STEP * noise / np.std(noise)
+    expected = expected_motion(STEP * np.round(angle / STEP), STEP, 1 / rate)
+
+    def power(error: FloatArray) -> float:
+        return float(np.sum(np.abs(np.fft.rfft(np.diff(error, 2), len(time)))[inside] ** 2))
+
+    drawn = np.mean([power(drawn_error(expected, draw)) for draw in range(4)])
+    # what is pooled where no motion is told is there more or less: a fifth of a level, and as much of four draws
+    assert 0.7 < drawn / power(expected.angle - angle) < 1.4
+
+
+def test_nothing_is_drawn_at_rest() -> None:
+    """An axis that stands passes no step: a likely motion stands as well, and no friction turns with it."""
+    angle = np.where(TIME < 6.0, 40 * np.sin(2 * np.pi * 0.4 * TIME), 40 * np.sin(2 * np.pi * 0.4 * 6.0))
+    expected = expected_motion(STEP * np.round(angle / STEP), STEP, 1 / RATE)
+    assert np.ptp((expected.likely(1) - expected.angle)[TIME > 6.5]) == 0.0
+    assert np.ptp((expected.likely(1) - expected.angle)[TIME < 5.5]) > 0.0
 
 
 def test_slow_motion_does_not_hold_the_lines_of_its_steps() -> None:
@@ -74,7 +103,7 @@ def test_slow_motion_does_not_hold_the_lines_of_its_steps() -> None:
     moving = slice(4000, -1000)
     speed = [
         np.gradient(Band(EDGE, rate).filter(one), 1 / rate)[moving]
-        for one in (angle, expected_motion(step * np.round(angle / step), step, 1 / rate))
+        for one in (angle, expected_motion(step * np.round(angle / step), step, 1 / rate).angle)
     ]
     assert np.std(speed[1]) < 0.01 * np.mean(speed[0])
     assert np.mean(speed[1]) == pytest.approx(np.mean(speed[0]), rel=1e-3)
@@ -88,16 +117,16 @@ def test_steps_of_fast_motion_are_white(monkeypatch: pytest.MonkeyPatch) -> None
     step = STEP / 4
     angle = 40 * np.sin(2 * np.pi * 0.4 * TIME)
     measured = np.round(angle / step) * step
-    found = acceleration(expected_motion(measured, step, 1 / RATE))
-    monkeypatch.setattr(encoder_error, "EVEN", np.inf)
-    white = acceleration(expected_motion(measured, step, 1 / RATE))
+    found = acceleration(expected_motion(measured, step, 1 / RATE).angle)
+    monkeypatch.setattr(expecting, "EVEN", np.inf)
+    white = acceleration(expected_motion(measured, step, 1 / RATE).angle)
     assert np.std(found - white) < 0.01 * np.std(white - acceleration(angle))
 
 
 def test_fine_steps_leave_the_motion_alone() -> None:
     fine = STEP / 2**12
     measured = np.round(motion() / fine) * fine
-    expected = expected_motion(measured, fine, 1 / RATE)
+    expected = expected_motion(measured, fine, 1 / RATE).angle
     assert np.max(np.abs(expected - measured)) < 5 * fine
 
 

@@ -10,13 +10,8 @@ import pytest
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
-from feeddrive.diagnosis.motion.encoder_error import (
-    DRAWS,
-    _share_of_error,
-    drawn_error,
-    expected_motion,
-    known_motion_of,
-)
+from feeddrive.diagnosis.motion.encoder_error import told_of
+from feeddrive.diagnosis.motion.expected_motion import expected_motion
 from feeddrive.diagnosis.motion.preparing import weighed_by
 from feeddrive.diagnosis.motion.unsure_motion import HALF, LEAST, unsure_motions, without_share
 from feeddrive.diagnosis.preparation import prepared
@@ -154,9 +149,8 @@ def test_strokes_at_constant_speed_are_told_by_a_fine_encoder() -> None:
     turning = np.hanning(123)[1:-1]
     angle = np.convolve(np.pad(strokes, 60, mode="edge"), turning / np.sum(turning), mode="valid")
     expected = expected_motion(step * np.round(angle / step), step, 1 / RATE)
-    errors = [drawn_error(expected, step, 1 / RATE, draw) for draw in range(DRAWS)]
-    share = _share_of_error(expected, errors, 1 / RATE)
-    left = without_share(expected, share, 1 / RATE) - angle
+    share = told_of(expected).share
+    left = without_share(expected.angle, share, 1 / RATE) - angle
     assert np.max(np.abs(left[250:-250])) < step  # half a second at either end is not compared
 
 
@@ -166,7 +160,9 @@ def test_a_vibration_that_comes_once_is_told_where_it_comes() -> None:
     strokes = 15.0 * (1 - np.cos(2 * np.pi * 0.4 * time))
     shaken = 1.5 * step * np.sin(2 * np.pi * 60.0 * time) * ((time > 17.5) & (time < 18.5))
     angle = strokes + shaken
-    known, told = known_motion_of(step * np.round(angle / step), step, 1 / RATE)
+    expected = expected_motion(step * np.round(angle / step), step, 1 / RATE)
+    told = told_of(expected)
+    known = told.known(expected.angle)
     hertz, over = np.fft.rfftfreq(len(time), 1 / RATE), np.fft.rfft(known - strokes)
     beyond = np.fft.irfft(np.where((hertz > 50) & (hertz < 70), over, 0), len(time))
     inside, before = (time > 17.6) & (time < 18.4), (time > 2) & (time < 17)

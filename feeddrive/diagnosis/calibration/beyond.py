@@ -101,7 +101,18 @@ def beyond_from_declared(problem: Problem, found: Fit) -> tuple[Problem, Effect]
         return None
     freed, (effect,) = said_by_effects(machines[chosen], [as_effect(problem.plant, known.values[chosen[0]], 0.0)])
     freed, (*rest, effect) = fitted_together(freed, (*found.effects, effect))
-    back = given_back(freed, effect)
+    return (freed, effect) if is_beyond(freed, rest, effect) else None
+
+
+def is_beyond(problem: Problem, rest: Sequence[Effect], effect: Effect) -> bool:
+    """Whether the recordings assert, at the machine of a set, that an effect puts its declared values out of tolerance.
+
+    Args:
+        problem: without these values among those that are fitted.
+        rest: the other effects of the set.
+        effect: which says that they are other.
+    """
+    back = given_back(problem, effect)
     assert back.calibration is not None
     values = back.calibration.values
     places = tuple(i for i, value in enumerate(values) if value.name and is_said_by(value, effect))
@@ -109,10 +120,10 @@ def beyond_from_declared(problem: Problem, found: Fit) -> tuple[Problem, Effect]
     for i in places:
         coordinates[i] = coordinate_said(problem.plant, values[i], effect)
     if not np.all(np.isfinite(coordinates)):
-        return None
+        return False
     there = with_new_slopes(back.at_values(coordinates), rest)
     told = known_values(there, fit(there, rest))
-    return (freed, effect) if told is not None and _gain(told, places) > _sure(len(places)) else None
+    return told is not None and _gain(told, places) > _sure(len(places))
 
 
 def with_torque_scale(problem: Problem, found: Fit) -> Problem | None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import beyond_from_declared, beyond_tolerance, with_torque_scale
+from feeddrive.diagnosis.calibration.beyond import beyond_from_declared, beyond_tolerance, is_beyond, with_torque_scale
 from feeddrive.diagnosis.calibration.calibrate import (
     PASSES,
     at_declared,
@@ -14,7 +14,7 @@ from feeddrive.diagnosis.calibration.calibrate import (
     recalibrated_by_rest,
 )
 from feeddrive.diagnosis.calibration.known import TOLERANCE
-from feeddrive.diagnosis.calibration.stated import said_by_effects
+from feeddrive.diagnosis.calibration.stated import is_within_tolerance, said_by_effects, without_effects
 from feeddrive.diagnosis.calibration.together import cost, fitted_together, stepped_together
 from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes, with_slopes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
@@ -163,6 +163,21 @@ def with_value_from_declared(problem: Problem, found: Fit) -> tuple[Problem, Fit
         return None
     freed, effect = begun
     return refitted(freed, fit(freed, (*found.effects, effect)))
+
+
+def with_value_back(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:
+    """A set without an effect on declared values that nothing puts beyond their tolerances any more; else None.
+
+    Such a value stood in for what was named after it.
+    """
+    if problem.calibration is None or of_hours(problem):
+        return None
+    for place, effect in enumerate(found.effects):
+        rest = [other for i, other in enumerate(found.effects) if i != place]
+        if is_within_tolerance(effect, problem.plant) is not None and not is_beyond(problem, rest, effect):
+            there = without_effects(problem, [effect], rest)
+            return refitted(there, fit(there, rest))
+    return None
 
 
 def with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit, Comparison] | None:

@@ -30,6 +30,7 @@ from feeddrive.diagnosis.finding.refitting import (
     refitted,
     where_friction_brakes,
     with_scale_beyond,
+    with_value_back,
     with_value_beyond,
     with_value_from_declared,
 )
@@ -166,6 +167,11 @@ def search(
         left_out = problem.budget.skips("declared values beyond their tolerances")
         if not left_out:  # on their way to rest, values pass tolerances that they stay within
             problem, found = at_rest(problem, found)
+        back = None if left_out else with_value_back(problem, found)
+        if back is not None and _members(back[1]) not in met:
+            met |= {_members(found), _members(back[1])}
+            problem, found = back
+            continue
         scaled = None if left_out else with_scale_beyond(problem, found)
         if scaled is not None:  # the recorder is asked before the machine
             problem, found = scaled
