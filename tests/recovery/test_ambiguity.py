@@ -10,7 +10,7 @@ import pytest
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.calibration.stated import said_by_effects
-from feeddrive.diagnosis.certainty.ambiguity import ambiguous_sets, at_its_limit, rivals_of
+from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival, ambiguous_sets, at_its_limit, rivals_of
 from feeddrive.diagnosis.certainty.inclusion import asserted, odds_for, possible_effects
 from feeddrive.diagnosis.certainty.next_experiment import distance, hardly_known, next_experiments
 from feeddrive.diagnosis.certainty.noise_colour import independent_share
@@ -149,6 +149,16 @@ def test_a_member_that_was_exchanged_is_tried_in_the_place_of_what_came_for_it()
     found = replace(found, rounds=(tried, ()), trials=taken)
     preferred, _ = with_the_preferred(found, rivals_of(found, judged))
     assert [effect.name for effect in preferred.fit.effects] == ["lead_error_cumulative"]
+
+
+@pytest.mark.parametrize(("ratio", "preferred"), [(0.99, True), (1.04, False)])
+def test_a_rival_goes_first_only_where_data_not_fitted_bear_it_out(ratio: float, preferred: bool) -> None:
+    """Odds that fitted data alone speak for, while others are met worse, name nothing."""
+    found, _ = settled([growth(1e-6, 3.0)], [lead(1e-6)], growth(1e-6, 3.0), seed=3)
+    mine = found.fit
+    rival = Rival(0, fit(found.problem, [growth(1e-6, 3.0)]), -2 * AGAINST, 1.0, ratio, found.problem)
+    other, _ = with_the_preferred(found, [[rival]])
+    assert (other.fit is not mine) is preferred
 
 
 def test_a_set_stands_beside_values_with_which_its_friction_takes_power(tmp_path: Path) -> None:

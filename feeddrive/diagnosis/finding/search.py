@@ -7,7 +7,7 @@ all effects together, and the likeliest of them is taken if what it adds also lo
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -140,7 +140,7 @@ def search(
             there, here = _refitted_with(other, begin[1]), after or (problem, found)
             if there is not None and odds_between(Standing(*here), Standing(*there), asked.now.count) > 0:
                 asked, near, after = other, other.near, there
-        far = _likelier_value(problem, found, after, asked.now.count)
+        far = _likelier_value(problem, found, after, asked.now.count, denied)
         if far is not None:
             after, by = far
             trials.append(Trial(number, after[1].effects[-1].name, by.gain, by.standard_error, True))
@@ -177,7 +177,7 @@ def search(
             problem, found = scaled
             continue
         beyond = None if left_out else with_value_beyond(problem, found)
-        if beyond is not None and _members(beyond[1]) not in met:
+        if beyond is not None and _members(beyond[1]) not in met and beyond[1].effects[-1].name not in denied:
             instead = _curve_of_value(problem, found, beyond, asked.now.count)
             met |= {_members(found), _members((instead or beyond)[1])}
             if instead is not None:
@@ -254,14 +254,18 @@ def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
 
 
 def _likelier_value(
-    problem: Problem, found: Fit, after: tuple[Problem, Fit] | None, count: int
+    problem: Problem, found: Fit, after: tuple[Problem, Fit] | None, count: int, denied: Container[str] = ()
 ) -> tuple[tuple[Problem, Fit], Comparison] | None:  # fmt: skip
     """A set with a declared value that is off by far, and what it brings, where that is likelier than a round's.
 
     Such a value draws all others along, and names are then taken for what is left beside values that are not there.
     """
     far = with_value_from_declared(problem, found)
-    if far is None or odds_between(Standing(*(after or (problem, found))), Standing(*far), count) <= 0:
+    if (
+        far is None
+        or far[1].effects[-1].name in denied
+        or odds_between(Standing(*(after or (problem, found))), Standing(*far), count) <= 0
+    ):
         return None
     return far, gain_between(Standing(problem, found), Standing(*far))
 

@@ -1,0 +1,77 @@
+"""Names that say that a declared value is other: kept only where it is beyond its tolerance; odds of others beside."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from feeddrive.diagnosis.calibration.calibrate import calibrated
+from feeddrive.diagnosis.calibration.stated import said_by_effects
+from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes
+from feeddrive.diagnosis.certainty.inclusion import OPEN, _members_at_rest
+from feeddrive.diagnosis.finding.refitting import with_value_back, with_value_from_declared
+from feeddrive.diagnosis.finding.sets import members_weighed
+from feeddrive.diagnosis.judging.veto import values_within_tolerance
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.effects.base import Port
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.friction.stribeck import Stribeck
+from tests.recovery.rigid_runs import MASS, Truth
+from tests.recovery.test_starts_beside_values import calibrated_without
+from tests.recovery.test_value_asked_once import begun
+
+TOLERANCE = 0.05
+"""Of a mass from a catalogue."""
+
+
+def with_payload(folder: Path, heavier: float) -> tuple[Problem, Fit]:
+    """A table heavier than declared by a share of its mass, and a set that says so by a payload."""
+    problem = calibrated(begun(folder, Truth(mass=heavier * MASS)))
+    there, effects = said_by_effects(problem, [Payload.of(mass=heavier * MASS)])
+    return there, fit(there, effects)
+
+
+@pytest.mark.parametrize(("heavier", "stays"), [(0.3 * TOLERANCE, False), (4 * TOLERANCE, True)])
+def test_a_payload_goes_back_into_the_tolerance_of_the_table_mass(tmp_path: Path, heavier: float, stays: bool) -> None:
+    problem, found = with_payload(tmp_path, heavier)
+    back = with_value_back(problem, found)
+    if stays:
+        assert back is None
+        return
+    assert back is not None
+    there, without = back
+    assert without.effects == () and there.calibration is not None
+    (mass,) = [i for i, value in enumerate(there.calibration.values) if value.key == "table_mass"]
+    value = there.calibration.values[mass]
+    share = np.expm1(value.deviation * there.calibration.coordinates[mass])
+    assert share == pytest.approx(heavier, abs=0.3 * TOLERANCE)  # fitted as a calibrated value
+
+
+@pytest.mark.parametrize(("heavier", "denied"), [(0.3 * TOLERANCE, True), (4 * TOLERANCE, False)])
+def test_a_value_is_other_only_where_its_interval_is_beyond_the_tolerance(
+    tmp_path: Path, heavier: float, denied: bool
+) -> None:
+    problem, found = with_payload(tmp_path, heavier)
+    (sentence,) = values_within_tolerance(problem, found)
+    assert bool(sentence) is denied
+
+
+def test_no_value_is_begun_from_the_declared_machine_where_all_are_within_their_tolerances(tmp_path: Path) -> None:
+    problem = calibrated(begun(tmp_path, Truth()))
+    assert with_value_from_declared(problem, fit(problem, ())) is None
+
+
+def test_odds_of_a_name_do_not_depend_on_where_the_declared_values_stood() -> None:
+    """Where values are off by more than their deviations a name stands in for them, and slopes assert it."""
+    near, drop = calibrated_without(), Stribeck.of(Port.TABLE, delta_force=1.0, velocity=4e-3)
+    assert near.calibration is not None
+    far = with_new_slopes(near.at_values(near.calibration.coordinates - 1.5), [drop])
+    found, moved = fit(near, [drop]), fit(far, [drop])
+    (by_slopes,) = members_weighed(far, moved, 30)
+    assert by_slopes.gain < -OPEN
+    (there,), (here,) = _members_at_rest(far, moved, 30), _members_at_rest(near, found, 30)
+    # nothing was planted; rest is where a step takes less than half a nat
+    assert there.gain > OPEN and there.gain == pytest.approx(here.gain, abs=0.5)
