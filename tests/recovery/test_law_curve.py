@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.finding.curve_in_place import of_its_own_form
 from feeddrive.diagnosis.finding.likelier import Taken
 from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_curves, with_curves_of
-from feeddrive.diagnosis.finding.search import _of_its_own_form
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.law_curve import STEPS, law_curves
 from feeddrive.diagnosis.likelihood.problem import Problem
@@ -91,11 +91,11 @@ def test_the_curve_of_a_law_is_asked_before_a_set_that_lacks_the_law() -> None:
     alone, others = (fit(problem, [*map(start, names)]) for names in (["viscous_asymmetry"], ["coulomb_asymmetry"]))
     odds, _ = likeliest_curve(problem, alone, COUNT)
     fewer = Taken(problem, others, "coulomb_asymmetry", 0.5 * odds)
-    opened = _of_its_own_form(problem, alone, fewer, COUNT)
+    opened = of_its_own_form(problem, alone, fewer, COUNT)
     assert opened is not None and opened[0].evidence[0].curves.keys() == {"viscous_asymmetry"}
-    assert _of_its_own_form(problem, alone, replace(fewer, odds=2 * odds), COUNT) is None
+    assert of_its_own_form(problem, alone, replace(fewer, odds=2 * odds), COUNT) is None
     both = fit(problem, [*alone.effects, *others.effects])  # names that come beside a law are asked otherwise
-    assert _of_its_own_form(problem, alone, replace(fewer, fit=both), COUNT) is None
+    assert of_its_own_form(problem, alone, replace(fewer, fit=both), COUNT) is None
 
 
 def test_laws_at_other_scales_follow_a_longer_tail() -> None:

@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 from feeddrive.diagnosis.finding.attempt import PROMISE, Attempt, refined, started
+from feeddrive.diagnosis.finding.members import Member, member
 from feeddrive.diagnosis.finding.scene import Candidate, Scene
 from feeddrive.diagnosis.likelihood.fit import Fit
 from feeddrive.diagnosis.likelihood.problem import Problem
@@ -82,10 +83,10 @@ def _promising_refined(scene: Scene, attempts: list[Attempt], pool: ThreadPoolEx
 
 def _best_per_place(attempts: Sequence[Attempt]) -> list[Attempt]:
     """The best of each name, port and place: which film or shaft it is shows only with the other effects free."""
-    best: dict[tuple[str, str, str], Attempt] = {}
+    best: dict[Member, Attempt] = {}
     for attempt in attempts:
         effect = attempt.fit.effects[-1]
-        best.setdefault((attempt.name, str(effect.port), effect.place), attempt)
+        best.setdefault(member(effect), attempt)
     return list(best.values())
 
 

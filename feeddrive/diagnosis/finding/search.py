@@ -8,7 +8,7 @@ all effects together, and the likeliest of them is taken if what it adds also lo
 from __future__ import annotations
 
 from collections.abc import Callable, Container
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,10 +17,12 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt
+from feeddrive.diagnosis.finding.curve_in_place import curve_of_value, of_no_name
 from feeddrive.diagnosis.finding.elsewhere import at_likelier_place
 from feeddrive.diagnosis.finding.likelier import Near, Taken, likelier, of_likelier_law, with_play
 from feeddrive.diagnosis.finding.materiality import is_material_here
-from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_map, with_curves_of
+from feeddrive.diagnosis.finding.members import Member, members_of
+from feeddrive.diagnosis.finding.open_map import with_curves_of
 from feeddrive.diagnosis.finding.refitting import (
     as_payload,
     at_rest,
@@ -41,10 +43,8 @@ from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
-from feeddrive.diagnosis.likelihood.law_curve import has_curve
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, log_odds, odds_between
-from feeddrive.diagnosis.motion.predictability import has_play
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between
 from feeddrive.effects.base import Effect
 from feeddrive.effects.transmission.backlash import Backlash
 
@@ -120,7 +120,7 @@ def search(
     rounds: list[tuple[Attempt, ...]] = [*start.rounds] if start is not None else []
     denied = {**start.impossible} if start is not None else {}
     impossible: dict[str, str] = {**denied}
-    met: set[tuple[tuple[str, str, str], ...]] = set()
+    met: set[tuple[Member, ...]] = set()
     near: tuple[Near, ...] = ()
     tried = start.tried if start is not None else 0
     problem, found = balanced(problem, found)
@@ -129,7 +129,7 @@ def search(
         progress(f"round {number}: {len(found.effects)} effects so far")
         asked = _asked(problem, found, impossible, denied, number)
         near, tried = asked.near, max(tried, asked.now.count)
-        unnamed = _of_no_name(problem, found, asked)
+        unnamed = of_no_name(problem, found, asked.taken, asked.now.count)
         if unnamed is not None:
             problem, found = refitted(*unnamed)
             continue
@@ -150,8 +150,8 @@ def search(
         if after is not None:
             problem, found = in_steps_told(*after)
             progress(f"found so far: {', '.join(effect.name for effect in found.effects)}")
-            if _members(found) not in met:
-                met.add(_members(found))
+            if members_of(found.effects) not in met:
+                met.add(members_of(found.effects))
                 continue
         # nothing likelier is near, or what was met: only each other's place is taken, or other values stand beside it
         others = [*filter(is_another, found.effects), *soft_everywhere(problem, found)]
@@ -160,16 +160,16 @@ def search(
             impossible |= denied
             problem, found = refitted(problem, fit(problem, _without(found, others)))
         moved = None if others else at_likelier_place(problem, found, asked.now.count)
-        if moved is not None and _members(moved[1]) not in met:
-            met |= {_members(found), _members(moved[1])}
+        if moved is not None and members_of(moved[1].effects) not in met:
+            met |= {members_of(found.effects), members_of(moved[1].effects)}
             problem, found = in_steps_told(*moved)
             continue
         left_out = problem.budget.skips("declared values beyond their tolerances")
         if not left_out:  # on their way to rest, values pass tolerances that they stay within
             problem, found = at_rest(problem, found)
         back = None if left_out else with_value_back(problem, found)
-        if back is not None and _members(back[1]) not in met:
-            met |= {_members(found), _members(back[1])}
+        if back is not None and members_of(back[1].effects) not in met:
+            met |= {members_of(found.effects), members_of(back[1].effects)}
             problem, found = back
             continue
         scaled = None if left_out else with_scale_beyond(problem, found)
@@ -177,9 +177,9 @@ def search(
             problem, found = scaled
             continue
         beyond = None if left_out else with_value_beyond(problem, found)
-        if beyond is not None and _members(beyond[1]) not in met and beyond[1].effects[-1].name not in denied:
-            instead = _curve_of_value(problem, found, beyond, asked.now.count)
-            met |= {_members(found), _members((instead or beyond)[1])}
+        if beyond is not None and members_of(beyond[1].effects) not in met and beyond[1].effects[-1].name not in denied:
+            instead = curve_of_value(problem, found, beyond, asked.now.count)
+            met |= {members_of(found.effects), members_of((instead or beyond)[1].effects)}
             if instead is not None:
                 problem, found = instead
                 continue
@@ -204,55 +204,6 @@ def _asked(
     return _Asked(now, of_likelier_law(taken, now.count, denied), near)
 
 
-def _of_no_name(problem: Problem, found: Fit, asked: _Asked) -> tuple[Problem, Fit] | None:
-    """A set beside a lead map, or the curve of a law, where that is likelier than any further name; else None.
-
-    A map that says nothing beside the likeliest name is none: over part of a stroke its curves are near a line.
-    """
-    taken, count = asked.taken, asked.now.count
-    likelier_map = log_odds_of_map(problem, found, count) > max(taken.odds if taken is not None else 0.0, 0.0)
-    if likelier_map and (taken is None or log_odds_of_map(taken.problem, taken.fit, count) > 0):
-        opened = replace(problem, evidence=tuple(e.with_map(True) for e in problem.evidence))
-        return opened, fit(opened, found.effects)
-    return None if taken is None else _of_its_own_form(problem, found, taken, count) or _of_another_form(taken, count)
-
-
-def _of_its_own_form(problem: Problem, found: Fit, taken: Taken, count: int) -> tuple[Problem, Fit] | None:
-    """A set beside the curve of one of its laws, where a likelier set lacks such a law and the curve is likelier still.
-
-    What another form of a law leaves beside it is smaller once two others share what the law takes. The law and its
-    curve must leave what counts as noise, as beside another name.
-    """
-    stays = _members(taken.fit)
-    if not has_curve([effect for effect in found.effects if _member(effect) not in stays]):
-        return None
-    odds, opened = likeliest_curve(problem, found, count)
-    if odds <= taken.odds:
-        return None
-    there = fit(opened, found.effects, iterations=JOINT_ITERATIONS)
-    return (opened, there) if _level(opened, there) * LEVEL**2 < 1 else None
-
-
-def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
-    """A likelier set without one of the names that it adds, where the curve of another of its laws is likelier.
-
-    The law and its curve must leave what counts as noise (`LEVEL`): where more is left, more than a form is missing.
-    """
-    effects, added = taken.fit.effects, len(taken.names)
-    problem = with_curves_of(taken.problem, effects)
-    best, chosen = 0.0, None
-    for place in range(len(effects) - added, len(effects)):
-        rest = [effect for i, effect in enumerate(effects) if i != place]
-        if has_curve(rest) and not has_play(effects[place : place + 1]):
-            without = fit(problem, rest, iterations=JOINT_ITERATIONS)
-            odds, opened = likeliest_curve(problem, without, count)
-            odds -= log_odds(problem, without, taken.fit, count)
-            there = fit(opened, rest, iterations=JOINT_ITERATIONS)
-            if odds > best and _level(opened, there) * LEVEL**2 < 1:
-                best, chosen = odds, (opened, without)
-    return chosen
-
-
 def _likelier_value(
     problem: Problem, found: Fit, after: tuple[Problem, Fit] | None, count: int, denied: Container[str] = ()
 ) -> tuple[tuple[Problem, Fit], Comparison] | None:  # fmt: skip
@@ -268,28 +219,6 @@ def _likelier_value(
     ):
         return None
     return far, gain_between(Standing(problem, found), Standing(*far))
-
-
-def _curve_of_value(
-    problem: Problem, found: Fit, beyond: tuple[Problem, Fit, Comparison], count: int
-) -> tuple[Problem, Fit] | None:
-    """A set beside the curve of one of its laws, where that is likelier than a declared value beyond its tolerance.
-
-    A law of another form than ours draws declared values along, each as far as it helps.
-    """
-    if not has_curve(found.effects):
-        return None
-    odds, opened = likeliest_curve(problem, found, count)
-    if odds <= max(odds_between(Standing(problem, found), Standing(*beyond[:2]), count), 0.0):
-        return None
-    there = fit(opened, found.effects, iterations=JOINT_ITERATIONS)
-    return refitted(opened, there) if _level(opened, there) * LEVEL**2 < 1 else None
-
-
-def _level(problem: Problem, found: Fit) -> float:
-    """Weighted squared error per row, of the channel that is met worst by its noise."""
-    left = max((value for e in problem.evidence for value in e.left.values()), default=1.0)
-    return left**2 * found.squared_error / max(len(found.residual), 1)
 
 
 def _refitted_with(asked: _Asked, found: Fit) -> tuple[Problem, Fit] | None:
@@ -333,16 +262,6 @@ def _is_seen(without: Standing, found: Standing) -> bool:
         for before, after in pairs
         for name, rows in after.items()
     )
-
-
-def _members(found: Fit) -> tuple[tuple[str, str, str], ...]:
-    """Names of a set, and where they act."""
-    return tuple(sorted(map(_member, found.effects)))
-
-
-def _member(effect: Effect) -> tuple[str, str, str]:
-    """Name of an effect, and where it acts."""
-    return effect.name, str(effect.port), effect.place
 
 
 def _without(found: Fit, gone: list[Effect]) -> list[Effect]:
