@@ -168,9 +168,11 @@ def search(
         if not left_out:  # on their way to rest, values pass tolerances that they stay within
             problem, found = at_rest(problem, found)
         back = None if left_out else with_value_back(problem, found)
-        if back is not None and members_of(back[1].effects) not in met:
-            met |= {members_of(found.effects), members_of(back[1].effects)}
+        if back is not None:
             problem, found = back
+            if members_of(found.effects) in met:  # what comes for it is none either
+                break
+            met.add(members_of(found.effects))
             continue
         scaled = None if left_out else with_scale_beyond(problem, found)
         if scaled is not None:  # the recorder is asked before the machine
