@@ -1,0 +1,31 @@
+"""An effect that is small on its machine is reported where the error of a channel shows it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from feeddrive.diagnosis.finding.materiality import LEAST_MASS_SHARE
+from feeddrive.diagnosis.finding.search import _ended
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
+from feeddrive.effects.chain.structural_mode import StructuralMode
+from tests.recovery.drawn import drawn
+from tests.recovery.planted import axis_plant, pair
+
+
+@pytest.mark.parametrize(("finer", "reported"), [(1.0, False), (1e3, True)])
+def test_a_part_that_shakes_is_reported_where_sensors_are_fine_enough(finer: float, reported: bool) -> None:
+    """A two-thousandth of the table: below the noise of the bench, far above that of sensors a thousand times finer."""
+    plant = axis_plant("bench")
+    usual = prepare(pair("bench", "null")[0], plant, 1.0)
+    fine = replace(usual, noise={name: noise / finer for name, noise in usual.noise.items()})
+    mass = 0.5 * LEAST_MASS_SHARE * plant.chain.values["table_mass"]
+    mode = StructuralMode.of(mass=mass, frequency=57.0, damping=0.012)
+    problem = Problem(plant, (drawn(plant, fine, [mode], 1),), AxisPredictor())
+    _, found, small = _ended(problem, fit(problem, [mode]))
+    assert [one.name for one in found.effects] == [mode.name] * reported
+    assert [one.name for one in small] == [mode.name] * (not reported)
