@@ -23,7 +23,7 @@ from tests.recovery.unlisted import recording
 
 
 def test_declared_values_of_a_rival_are_asked_on_the_samples_of_both() -> None:
-    width = 2e-6
+    width = 2e-5
     pair = recording_pair(AXES["bench"], (planted.Backlash(width=width),), (1, 2), (7.0, 6.0))
     fitted, validate = (recording(one, name) for one, name in zip(pair, ("train", "validate"), strict=True))
     begun, (kept,), _ = prepared(catalogued().plant, [fitted], [validate], 0.75)
