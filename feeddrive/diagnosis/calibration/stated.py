@@ -106,7 +106,8 @@ def _joined(one: Effect, other: Effect) -> Effect:
 
 def is_within_tolerance(effect: Effect, plant: Plant) -> bool | None:
     """Whether an effect puts a declared value no further than its tolerance; None where it is about none."""
-    about = [value for value in calibrated_values(plant) if value.name and is_said_by(value, effect)]
+    values = calibrated_values(plant) if plant.has_motion else ()
+    about = [value for value in values if value.name and is_said_by(value, effect)]
     if not about:
         return None
     return all(abs(coordinate_said(plant, value, effect)) <= TOLERANCE for value in about)

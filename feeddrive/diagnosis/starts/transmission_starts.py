@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.likelihood.coordinates import LEAST
 from feeddrive.effects.base import Effect
@@ -57,7 +58,8 @@ def preload_loss(scene: Scene) -> list[list[Effect]]:
     if slopes[best] <= 0 or shares[best] < LEAST_LAG:
         return []
     ratio = max(1 / (1 + float(slopes[best])), LEAST[PreloadLoss.name, "ratio"])
-    return [[PreloadLoss.of(ratio=ratio, force=float(limits[best]))]]
+    start = PreloadLoss.of(ratio=ratio, force=float(limits[best]))
+    return [[start]] if is_material(start, scene.plant) else []
 
 
 def stiffness(scene: Scene) -> list[list[Effect]]:
