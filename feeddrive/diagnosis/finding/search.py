@@ -140,7 +140,7 @@ def search(
             there, here = _refitted_with(other, begin[1]), after or (problem, found)
             if there is not None and odds_between(Standing(*here), Standing(*there), asked.now.count) > 0:
                 asked, near, after = other, other.near, there
-        far = _likelier_value(problem, found, after, asked.now.count, denied)
+        far = None if found.effects else _likelier_value(problem, found, after, asked.now.count, denied)
         if far is not None:
             after, by = far
             trials.append(Trial(number, after[1].effects[-1].name, by.gain, by.standard_error, True))
