@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated
+from feeddrive.diagnosis.calibration.declared import as_effect, calibrated_values, said_share
 from feeddrive.diagnosis.calibration.stated import said_by_effects
 from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes
 from feeddrive.diagnosis.certainty.inclusion import OPEN, _members_at_rest
@@ -20,6 +21,7 @@ from feeddrive.effects.base import Port
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.friction.stribeck import Stribeck
 from tests.recovery.rigid_runs import MASS, Truth
+from tests.recovery.test_numbers_beside import catalogued
 from tests.recovery.test_starts_beside_values import calibrated_without
 from tests.recovery.test_value_asked_once import begun
 
@@ -75,3 +77,13 @@ def test_odds_of_a_name_do_not_depend_on_where_the_declared_values_stood() -> No
     (there,), (here,) = _members_at_rest(far, moved, 30), _members_at_rest(near, found, 30)
     # nothing was planted; rest is where a step takes less than half a nat
     assert there.gain > OPEN and there.gain == pytest.approx(here.gain, abs=0.5)
+
+
+@pytest.mark.parametrize("away", [-1e4, 1e4])
+def test_a_value_at_its_farthest_can_be_said_by_an_effect(away: float) -> None:
+    """A factor of twenty, which is where a stiffness, and what says it, end."""
+    plant = catalogued().plant
+    for value in calibrated_values(plant):
+        if value.name:
+            effect = as_effect(plant, value, away)
+            assert said_share(plant, value, effect)[1] == pytest.approx(20.0 if away > 0 else 0.05)

@@ -40,7 +40,8 @@ from feeddrive.plant.motor_torque import TorqueGain, declared_gain
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
-FARTHEST = 3.0
+FARTHEST_FACTOR = 20.0
+FARTHEST = math.log(FARTHEST_FACTOR)
 """Logarithm of a value over the declared one at most: a factor of twenty, so that every plant tried is a machine."""
 
 _WRITTEN = re.compile(r"± ([^,(]+)")
@@ -85,7 +86,9 @@ class CalibratedValue:
 
     def factor(self, coordinate: float) -> float:
         """Value over declared at a coordinate."""
-        return math.exp(min(max(self.deviation * coordinate, -FARTHEST), FARTHEST))
+        factor = math.exp(min(max(self.deviation * coordinate, -FARTHEST), FARTHEST))
+        # the exponential of an end, rounded, may be beyond it
+        return min(max(factor, 1 / FARTHEST_FACTOR), FARTHEST_FACTOR)
 
 
 _CHAIN = (
