@@ -13,6 +13,7 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.certainty.preferred import judged_apart
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging import judge as judge_of
 from feeddrive.diagnosis.judging import veto
 from feeddrive.diagnosis.judging.denied_again import settled_names
 from feeddrive.diagnosis.judging.judge import Judged, Share, prepared_for_judging
@@ -75,6 +76,29 @@ def test_real_one_stays_and_one_that_is_not_there_goes(rigid: Plant) -> None:
 def test_nothing_is_kept_of_a_recording_in_which_nothing_lacks(rigid: Plant, effect: Effect) -> None:
     found, _ = kept_of(rigid, Truth(seed=5), effect)
     assert found.fit.effects == () and list(found.impossible) == [effect.name]
+
+
+def test_a_refit_that_judged_motion_cannot_follow_leaves_the_others_as_they_were(
+    rigid: Plant, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem, evidence, _ = prepared(
+        rigid, [rigid_run("a", Truth(ripple=0.01))], [rigid_run("b", Truth(ripple=0.01))], 0.75
+    )
+    found = Search(problem, fit(problem, [BOGUS, RIPPLE]), (), (), {})
+    judged = judging(found, evidence)
+    asked: list[Sequence[Effect]] = []
+    plain = judge_of.share_beyond
+
+    def share_beyond(problem: Problem, judged: Sequence[Judged], refitted: Sequence[Effect]) -> Share:
+        asked.append(refitted)
+        if len(asked) == 1:
+            raise InputError("the plant cannot be simulated with this motion", problem.plant.name, "")
+        return plain(problem, judged, refitted)
+
+    monkeypatch.setattr(judge_of, "share_beyond", share_beyond)
+    share = judge_of.share_of(problem, judged, found.fit.effects, 1)
+    assert asked[1] == [found.fit.effects[0]] and asked[0] != asked[1]
+    assert share.carries  # the ripple of the machine
 
 
 def test_a_step_to_a_plant_that_cannot_be_simulated_denies_nothing(

@@ -166,7 +166,10 @@ def share_of(problem: Problem, judged: Sequence[Judged], effects: Sequence[Effec
     """What the effect at `index` explains, all other effects refitted without it."""
     rest = [*effects[:index], *effects[index + 1 :]]
     problem = regained(problem, rest)
-    return share_beyond(problem, judged, fit(problem, rest, iterations=2).effects if rest else ())
+    try:
+        return share_beyond(problem, judged, fit(problem, rest, iterations=2).effects if rest else ())
+    except InputError:  # refitted to other motions, the others may be a plant that these cannot be simulated with
+        return share_beyond(problem, judged, rest)
 
 
 def share_beyond(problem: Problem, judged: Sequence[Judged], refitted: Sequence[Effect]) -> Share:
