@@ -20,6 +20,7 @@ from feeddrive.diagnosis.finding.sets import Neighbour, _not_told, members_weigh
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
 from feeddrive.diagnosis.likelihood.set_evidence import (
+    DISCREPANCY,
     Standing,
     declared_cost,
     declining,
@@ -55,7 +56,7 @@ def problem(columns: dict[str, FloatArray], measured: FloatArray) -> Any:
     """Recordings in which an effect of size one is its column."""
     evidence = SimpleNamespace(
         channels=("a",), fit_rows=np.ones(ROWS, dtype=bool), recording=SimpleNamespace(sample_time=0.01), block=0.5,
-        thinning=1, floating=(), model_error={}, noise={}, thinned=lambda rows: rows,
+        thinning=1, floating=(), model_error={}, noise={}, thinned=lambda rows: rows, at_draws=(),
     )  # fmt: skip
 
     def residual(effects: Sequence[Effect]) -> FloatArray:
@@ -91,7 +92,8 @@ def attempt(effect: Effect, columns: dict[str, FloatArray], found: Fit, made: An
     """A candidate at its start, beside a set that stays as it is."""
     slopes, held = columns[effect.name][:, None], len(found.effects)
     start = Fit((*found.effects, effect), found.residual, slopes, np.zeros(1), held)
-    return Attempt(effect.name, start, Comparison(0.0, 0.0, 0.0), made)
+    nothing = Comparison(0.0, 0.0, 0.0)
+    return Attempt(effect.name, start, nothing, made, nothing)
 
 
 def drawn(seed: int, *sizes: float, likeness: float = 0.0) -> tuple[dict[str, FloatArray], FloatArray]:
@@ -216,6 +218,27 @@ def test_two_effects_that_hide_each_other_are_found_together() -> None:
     assert ranked[0].gain > 5 + max((one.gain for one in alone), default=-np.inf)
 
 
+def test_an_effect_is_told_from_the_colour_that_it_makes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A slow effect leaves white noise, and without it the residual is slow: by that colour it would say little.
+
+    It is of 60 deviations, and has some fifteen independent values; a fast one of 30 deviations keeps the only place
+    of the beam where the colour at hand alone is asked.
+    """
+    monkeypatch.setattr("feeddrive.diagnosis.finding.sets.BEAM", 1)
+    columns, _ = drawn(12)
+    slow = uniform_filter1d(columns["payload"], 400, mode="wrap")
+    columns["payload"] = slow / np.std(slow)
+    noise = np.random.default_rng(13).standard_normal(ROWS)
+    measured = noise + (60.0 * columns["payload"] + 30.0 * columns["constant_force"]) / np.sqrt(ROWS)
+    made, nothing = problem(columns, measured), fitted((), columns, measured)
+    effects = (FIRST, SECOND)
+    ranked = neighbours(made, nothing, [attempt(effect, columns, nothing, made) for effect in effects], COUNT)
+    alone = [one for one in ranked if len(one.added) == 1]
+    assert named(alone[0], effects) == {"payload"}
+    # told to a deviation of sixty, by a spectrum that is known to a fifth; one value costs some eight nats
+    assert alone[0].gain == pytest.approx(0.5 * 60.0**2 / (1 + DISCREPANCY * ROWS) - 8.0, rel=0.3)
+
+
 def test_effect_that_stands_in_for_another_is_swapped_and_one_that_no_longer_pays_is_dropped() -> None:
     columns, measured = drawn(5, 60.0, likeness=0.95)
     wrong = fitted((SECOND,), columns, measured)
@@ -253,6 +276,7 @@ class Part:
     channels, recording, block = ("a",), SimpleNamespace(sample_time=0.01), 0.5
     thinning, floating, model_error, edge = 1, (), {}, 50.0  # type: ignore[var-annotated]
     motion_speed, noise = np.zeros(ROWS), {}  # type: ignore[var-annotated]
+    at_draws = ()
 
     def __init__(self, counted: Any) -> None:
         self.counted = self.fit_rows = counted

@@ -65,8 +65,7 @@ def _scores(problem: Problem, evidence: AxisEvidence, asked: Sequence[Calibrated
     plants += [with_values(problem.plant, (value,), np.array([STEP / value.deviation])) for value in asked]
     expected = evidence.weighted(problem.predictor.predict(plants[0], evidence), rows)
     scores = []
-    for motion in evidence.drawn:
-        at = replace(evidence, motion=replace(motion, time=evidence.motion.time))
+    for at in evidence.at_draws:
         here, *others = (at.weighted(problem.predictor.predict(plant, at), rows) for plant in plants)
         scores.append([np.bincount(blocks, (other - here) * (expected - here)) * value.deviation / STEP
                        for other, value in zip(others, asked, strict=True)])  # fmt: skip

@@ -25,6 +25,11 @@ FITTED = 2
 are near by design, so that slopes put the likeliest among the first."""
 
 
+ASKED = 3 * FITTED
+"""As many where an encoder does not tell the motion: what its steps give is asked of a fitted set alone, and a set that
+slopes put first for it takes no place from a name behind."""
+
+
 @dataclass(frozen=True)
 class Near:
     """An effect that was not taken: logarithm of the odds for it, and the part that grows with the time recorded."""
@@ -53,12 +58,18 @@ def likelier(problem: Problem, found: Fit, now: Round, denied: Container[str]) -
     here = [attempt for attempt in now.attempts if same_samples(attempt.problem, problem)]
     sets = neighbours(problem, found, here, now.count)
     able = [one for one in sets if one.gain > 0]
-    chosen = [one for one in able if one.is_next][:FITTED] + [one for one in able[:1] if not one.is_next]
     at_hand = Standing(problem, found)
     tried: list[Taken | None] = []
-    for one in chosen:  # the likeliest in any case
-        if not tried or not problem.budget.skips("sets of effects that came near"):
-            tried.append(_fitted(at_hand, one, here, now.count, denied))
+    given = dict[str, float]()  # odds of what was fitted: slopes do not know what the encoder's steps give
+    most = ASKED if any(e.at_draws for e in problem.evidence) else FITTED
+    for one in [each for each in able if each.is_next][:most] + [each for each in able[:1] if not each.is_next]:
+        if one.is_next and sum(each is not None and each.odds > 0 for each in tried) >= FITTED:
+            continue
+        if tried and problem.budget.skips("sets of effects that came near"):  # the likeliest in any case
+            break
+        tried.append(_fitted(at_hand, one, here, now.count, denied))
+        if tried[-1] is not None:
+            given[tried[-1].name] = tried[-1].odds
     for attempt in now.attempts:
         if not same_samples(attempt.problem, problem):  # some samples tell less of it: compared on the others
             there = fit(attempt.problem, found.effects, iterations=0)
@@ -68,7 +79,8 @@ def likelier(problem: Problem, found: Fit, now: Round, denied: Container[str]) -
             ]
     best = _best((one for one in tried if one is not None and one.odds > 0), now.count)
     beside = [one for one in sets if not one.dropped and len(one.added) == 1 and one.speaks > 0]
-    return best, tuple(Near(here[one.added[0]].name, one.gain, one.speaks) for one in beside)
+    named = [(here[one.added[0]].name, one) for one in beside]
+    return best, tuple(Near(name, min(one.gain, given.get(name, one.gain)), one.speaks) for name, one in named)
 
 
 def _fitted(
@@ -97,7 +109,7 @@ def _fitted(
             own, result = again, fit(again, result.effects, iterations=JOINT_ITERATIONS)
         refuse_of_no_hours(own, result.effects)
         taken = Taken(own, result, name, _odds(at_hand, Standing(own, result), count))
-        if not one.added or one.dropped or compared(own, name, result, found.effects).comparison.pays:
+        if not one.added or one.dropped or compared(own, name, result, found.effects).pays:
             return taken
         anew = of_likelier_law(taken, count, denied)
         if anew is None or anew is taken or not gain_between(at_hand, anew).pays:

@@ -77,6 +77,11 @@ class Evidence:
         comb[:: self.thinning] = True
         return rows & comb
 
+    @property
+    def at_draws(self) -> tuple[Self, ...]:
+        """The recording on motions that its encoder would have told as well; none where it tells the motion itself."""
+        return ()
+
     def weighted(self, series: dict[str, FloatArray], rows: BoolArray) -> FloatArray:
         """Channels at some samples over their noise, without what their sensors leave open, one after the other.
 

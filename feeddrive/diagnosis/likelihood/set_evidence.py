@@ -1,7 +1,7 @@
 """Evidence of a set of effects: what the data say for it, less what its freedom and its luck among many cost.
 
     log E(S) = -|r_S|² / 2c + Σ log p(θ_i) + k/2 log 2π - 1/2 log |H/c + W⁻²| + log p(S)
-    c = d' Γ d / d'd + δ |r|²
+    c = d' Γ d / d'd + δ |r|² + v
     p(S) = B(1 + |S|, 2K - |S|) / B(1, K)
 
 | symbol | meaning | unit |
@@ -14,6 +14,7 @@
 | d | difference of the residuals of two sets that are compared | 1 |
 | Γ | covariance of the residual that is less: its spectrum, its level where d is large, sums over blocks | 1 |
 | δ | `DISCREPANCY` | 1 |
+| v | what an encoder's steps alone give along d (`encoder_along`) | 1 |
 | K | candidates and starts that were tried for one further effect | 1 |
 
 Two sets are compared on the same samples, with one c. Sets with a free play decline to predict some, and are compared
@@ -54,6 +55,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
     left_out_residual,
     model_error_rows,
 )
+from feeddrive.diagnosis.likelihood.encoder_along import encoder_along, machines_of
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.likelihood.problem import Problem
@@ -161,8 +163,9 @@ def prior_middle(effects: Sequence[Effect], plant: Plant) -> FloatArray:
 
 
 def log_odds(
-    problem: Problem, first: Fit, second: Fit, count: int, beyond: float = 0.0, of_first: Problem | None = None
-) -> float:
+    problem: Problem, first: Fit, second: Fit, count: int, beyond: float = 0.0, of_first: Problem | None = None,
+    encoder: float = 0.0,
+) -> float:  # fmt: skip
     """Logarithm of the odds for the second of two sets, all of whose effects are fitted to the same samples.
 
     Args:
@@ -172,11 +175,13 @@ def log_odds(
         count: candidates and starts that were tried.
         beyond: squared error of the first less that of the second on samples that one of them alone predicts.
         of_first: with the declared values that the first stands beside, where those are others.
+        encoder: v, where it was simulated.
     """
     excess = first.squared_error - second.squared_error + beyond
     if not np.isfinite(excess):
         return float("inf") if excess > 0 else float("-inf")
     variance = variance_along(problem, min((first, second), key=lambda one: one.squared_error), first, second)
+    variance += encoder
     sets = [
         log_volume(one.effects, problem.plant, one.coordinates, one.jacobian.T @ one.jacobian, variance)
         + log_prior_of_size(len(one.effects), count)
@@ -243,14 +248,24 @@ def odds_between(first: Standing, second: Standing, count: int) -> float:
         count: candidates and starts that were tried.
     """
     if same_samples(first.problem, second.problem):
-        return log_odds(second.problem, first.fit, second.fit, count, of_first=first.problem)
+        encoder = _encoder(second.problem, first, second)
+        return log_odds(second.problem, first.fit, second.fit, count, of_first=first.problem, encoder=encoder)
     common = commonly_predicted(second.problem, first.problem)
     own = replace(first.problem, evidence=common.evidence)
     try:
         there = fitted_there(first, own), fitted_there(second, common)
-        return log_odds(common, *there, count, excess_beyond(first, second, _level(*there)), own)
+        encoder = _encoder(common, Standing(own, there[0]), Standing(common, there[1]))
+        return log_odds(common, *there, count, excess_beyond(first, second, _level(*there)), own, encoder)
     except InputError:  # the first cannot be simulated with what suits the common samples best
         return math.inf
+
+
+def _encoder(problem: Problem, first: Standing, second: Standing) -> float:
+    """v of two sets on the samples of a problem."""
+    if not any(e.at_draws for e in problem.evidence):
+        return 0.0
+    machines = machines_of(*((one.problem, one.fit.effects) for one in (first, second)))
+    return encoder_along(problem, machines)
 
 
 def gain_between(first: Standing, second: Standing, in_folds: bool = True) -> Comparison:

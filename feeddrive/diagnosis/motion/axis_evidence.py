@@ -221,10 +221,15 @@ class AxisEvidence(Evidence):
         """The evidence as an error of the encoder shows in it; None for one that does not show."""
         if encoder is None:
             return self
-        motion = encoder.motion.timed(clock(self.recording))
+        motion, *drawn = (one.timed(clock(self.recording)) for one in (encoder.motion, *encoder.drawn))
         weighed = replace(self, gains=encoder.gains, added=encoder.added, unsure=encoder.unsure, evened_unsure={})
-        told = replace(weighed, motion=motion, told=encoder.told, drawn=encoder.drawn)
+        told = replace(weighed, motion=motion, told=encoder.told, drawn=tuple(drawn))
         return told.in_steps(self.motion.every)
+
+    @property
+    def at_draws(self) -> tuple[Self, ...]:
+        """The recording on the motions that are drawn."""
+        return tuple(replace(self, motion=motion) for motion in self.drawn)
 
     def in_steps(self, every: int) -> Self:
         """The evidence with its motion simulated in steps of so many rows."""
@@ -240,7 +245,8 @@ class AxisEvidence(Evidence):
             angle = known_motion_of(angle, quantisation_step(angle), recording.sample_time)
             angle = angle if self.told is None else angle + self.told
         motion = motor_motion(from_zero(recording), angle).timed(clock(recording))
-        return replace(self, recording=recording, motion=replace(motion, every=self.motion.every))
+        drawn = tuple(one.timed(clock(recording)) for one in self.drawn)
+        return replace(self, recording=recording, motion=replace(motion, every=self.motion.every), drawn=drawn)
 
     @property
     def motion_speed(self) -> FloatArray:

@@ -120,7 +120,7 @@ def _encoder_error(evidence: AxisEvidence) -> float:
 def _other_motions(evidence: AxisEvidence, error: float) -> Iterator[MotorMotion]:
     """Motions that the motor may have made as well: with the encoder's error [rad] once more."""
     if evidence.drawn:
-        yield from (replace(motion, time=evidence.motion.time) for motion in evidence.drawn[:DRAWS])
+        yield from evidence.drawn[:DRAWS]
         return
     generator, motion = np.random.default_rng(20240501), evidence.motion
     for _ in range(DRAWS):
