@@ -10,6 +10,7 @@ import numpy as np
 from feeddrive.diagnosis.finding.scene import Candidate, Scene
 from feeddrive.diagnosis.likelihood.coordinates import (
     absent_coordinates,
+    at_an_end,
     coordinate_ends,
     read_coordinates,
     write_coordinates,
@@ -27,7 +28,7 @@ from feeddrive.diagnosis.likelihood.folds import FOLDS, block_numbers
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.diagnosis.starts.residual_readings import BINS
-from feeddrive.effects.base import Effect, number
+from feeddrive.effects.base import Effect, FrictionEffect, number
 from feeddrive.effects.friction.viscous_warmup import ViscousWarmup
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
@@ -173,10 +174,24 @@ def _usable(scene: Scene, problem: Problem, name: str, result: Fit) -> Attempt:
         raise InputError(f"{name} could not be simulated", name)
     if not problem.possible(result.effects):
         raise InputError(f"{name} would have friction push the axis", name)
+    refuse_at_an_end(problem, result.effects[-1:])
     refuse_of_no_hours(problem, result.effects)
     if has_play(result.effects[-1:]):
         problem = with_predictable(scene.problem, result.effects)
     return compared(problem, name, result, scene.found)
+
+
+def refuse_at_an_end(problem: Problem, effects: Sequence[Effect]) -> None:
+    """Refuse a friction of which a value has run to the end of its range: judging would deny it.
+
+    A bristle that gives way by a picometre is a sign of the velocity, and takes minutes to simulate.
+
+    Raises:
+        InputError: there is such an effect.
+    """
+    for effect in effects:
+        if isinstance(effect, FrictionEffect) and at_an_end(effect, problem.plant):
+            raise InputError(f"{effect.name} has run to the end of what is physical", effect.name)
 
 
 def refuse_of_no_hours(problem: Problem, effects: Sequence[Effect]) -> None:

@@ -6,7 +6,14 @@ from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from feeddrive.diagnosis.calibration.calibrate import of_hours
-from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, refuse_of_no_hours, started
+from feeddrive.diagnosis.finding.attempt import (
+    JOINT_ITERATIONS,
+    Attempt,
+    compared,
+    refuse_at_an_end,
+    refuse_of_no_hours,
+    started,
+)
 from feeddrive.diagnosis.finding.open_map import log_odds_of_curves, with_curves_of
 from feeddrive.diagnosis.finding.round import Round
 from feeddrive.diagnosis.finding.scene import scene_of
@@ -107,6 +114,7 @@ def _fitted(
         again = regained(own, result.effects)
         if again is not own:  # what the play could not predict is to be predicted again
             own, result = again, fit(again, result.effects, iterations=JOINT_ITERATIONS)
+        refuse_at_an_end(own, result.effects[len(kept) :])
         refuse_of_no_hours(own, result.effects)
         taken = Taken(own, result, name, _odds(at_hand, Standing(own, result), count))
         if not one.added or one.dropped or compared(own, name, result, found.effects).pays:

@@ -120,7 +120,8 @@ class Share:
     Attributes:
         explains: channel to 1 - (rms with / rms without)^2.
         comparison: of the plants without and with it.
-        size: what it predicts there, in standard deviations of the noise; infinite where nothing is left to chance.
+        size: what it predicts there, in standard deviations of the noise; infinite where nothing is left to chance, 0
+            where it predicts nothing: a place on the stroke that the judged recording does not visit.
         levelled: the comparison with every block over what is left of it.
     """
 
@@ -198,7 +199,7 @@ def share_beyond(problem: Problem, judged: Sequence[Judged], refitted: Sequence[
     comparison = compare_left_out(before, after, blocks, gain_of_model_error(rows, before, after))
     # of a difference d the chance part of the gain scatters by 2 |d|, so this is |d|
     predicted, chance = float(np.sum((before - after) ** 2)), comparison.standard_error * float(before @ before)
-    size = 2 * predicted / chance if chance > 0 else float("inf")
+    size = 2 * predicted / chance if chance > 0 else float("inf") if predicted > 0 else 0.0
     return Share(explains, comparison, size, compare_levelled(before, after, blocks, comparison.least))
 
 

@@ -35,13 +35,14 @@ from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
 from feeddrive.diagnosis.calibration.stated import is_within_tolerance, without_effects
 from feeddrive.diagnosis.certainty.one_sided import one_sided
 from feeddrive.diagnosis.certainty.uncertainty import certainty
+from feeddrive.diagnosis.finding.attempt import with_short_blocks
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
 from feeddrive.diagnosis.likelihood.coordinates import (
     LEFT,
     absent_coordinates,
+    at_an_end,
     at_its_limit,
-    coordinate_ends,
     read_coordinates,
     write_coordinates,
 )
@@ -203,6 +204,10 @@ def _no_gain(found: Search, place: int, share: Share) -> str:
     inside = _left_out_gain(found, place)
     if inside.gain > SURE * inside.standard_error:
         return ""
+    if not share.shows:  # what no judged sample meets may be a passage shorter than a block: its own parts tell it
+        parts = _left_out_gain(replace(found, problem=with_short_blocks(found.problem)), place)
+        if parts.gain > max(parts.least, SURE * parts.standard_error):
+            return ""
     return (
         f"the judged data hardly show it, and on blocks left out of the fit it lowers the squared error by "
         f"{percent(inside.gain, 2)}, scatter {percent(inside.standard_error, 2)}"
@@ -220,23 +225,15 @@ def _left_out_gain(found: Search, place: int) -> Comparison:
 def ends_reached(problem: Problem, fitted: Fit) -> list[str]:
     """Per effect, a sentence on the first value at an end of what is physical; empty where there is none.
 
-    Where the end is the absent effect, or a default, it is a value as any other: a damper of nothing, a share of none.
     A value that is known to a factor has no such end: there the law is another one (`at_its_limit`).
     """
     result = []
     too_little = _leaves_too_little(problem, fitted.effects)
     for effect in fitted.effects:
-        vector = read_coordinates([effect], problem.plant)
-        low, high = coordinate_ends([effect], problem.plant)
-        absent, _ = absent_coordinates([effect], problem.plant)
-        defaults = read_coordinates([effect.with_values(**_defaults(effect))], problem.plant)
-        # a coordinate is not resolved below the step of the slopes
         # a sine has no end in either component, and one in both
         tops = [p for p in effect.parameters if p.key == "amplitude" and np.isfinite(p.maximum)]
         topped = any(float(effect.values[p.key]) >= p.maximum for p in tops if "phase" in effect.values)  # type: ignore[arg-type]
-        near = np.minimum(np.abs(vector - low), np.abs(high - vector)) < 1e-4 * np.maximum(1.0, np.abs(vector))
-        plain = np.isclose(vector, absent) | (np.isclose(vector, defaults) & np.isnan(absent))
-        ended = topped or np.any(near & ~plain) or (too_little and isinstance(effect, ChainEffect))
+        ended = topped or at_an_end(effect, problem.plant) or (too_little and isinstance(effect, ChainEffect))
         ended = ended or at_its_limit(effect)
         result.append(_end_sentence(effect) if ended and not is_shift(effect) else "")
     return result
@@ -251,14 +248,6 @@ def _leaves_too_little(problem: Problem, effects: Sequence[Effect]) -> bool:
     kinds = ("mass", "inertia", "stiffness")
     # rounding of the sum aside
     return any(after[key] < LEFT * declared[key] * (1 - 1e-9) for key in declared if key.endswith(kinds))
-
-
-def _defaults(effect: Effect) -> dict[str, float]:
-    return {
-        p.key: p.default
-        for p in effect.parameters
-        if p.default is not None and isinstance(effect.values.get(p.key), float) and (p.minimum <= p.default)
-    }
 
 
 def _end_sentence(effect: Effect) -> str:

@@ -286,3 +286,18 @@ def _flat(effects: Sequence[Effect]) -> FloatArray:
         for value in effect.values.values():
             numbers += list(value) if isinstance(value, tuple) else [float(value)]
     return np.array(numbers)
+
+
+def at_an_end(effect: Effect, plant: Plant) -> bool:
+    """Whether a coordinate of an effect is at an end of its physical range, as far as slopes resolve it.
+
+    Where the end is the absent effect, or a default, it is a value as any other: a damper of nothing, a share of none.
+    """
+    vector = read_coordinates([effect], plant)
+    low, high = coordinate_ends([effect], plant)
+    absent, _ = absent_coordinates([effect], plant)
+    known = {p.key: p.default for p in effect.parameters if p.default is not None and p.minimum <= p.default}
+    plain = effect.with_values(**{key: one for key, one in known.items() if isinstance(effect.values.get(key), float)})
+    near = np.minimum(np.abs(vector - low), np.abs(high - vector)) < 1e-4 * np.maximum(1.0, np.abs(vector))
+    allowed = np.isclose(vector, absent) | (np.isclose(vector, read_coordinates([plain], plant)) & np.isnan(absent))
+    return bool(np.any(near & ~allowed))

@@ -248,24 +248,26 @@ def odds_between(first: Standing, second: Standing, count: int) -> float:
         count: candidates and starts that were tried.
     """
     if same_samples(first.problem, second.problem):
-        encoder = _encoder(second.problem, first, second)
-        return log_odds(second.problem, first.fit, second.fit, count, of_first=first.problem, encoder=encoder)
+        return _odds_beside_encoder(first, second, count, 0.0)
     common = commonly_predicted(second.problem, first.problem)
     own = replace(first.problem, evidence=common.evidence)
     try:
         there = fitted_there(first, own), fitted_there(second, common)
-        encoder = _encoder(common, Standing(own, there[0]), Standing(common, there[1]))
-        return log_odds(common, *there, count, excess_beyond(first, second, _level(*there)), own, encoder)
+        beyond = excess_beyond(first, second, _level(*there))
+        return _odds_beside_encoder(Standing(own, there[0]), Standing(common, there[1]), count, beyond)
     except InputError:  # the first cannot be simulated with what suits the common samples best
         return math.inf
 
 
-def _encoder(problem: Problem, first: Standing, second: Standing) -> float:
-    """v of two sets on the samples of a problem."""
-    if not any(e.at_draws for e in problem.evidence):
-        return 0.0
+def _odds_beside_encoder(first: Standing, second: Standing, count: int, beyond: float) -> float:
+    """`log_odds`, what the encoder's steps give counted where it may matter: it only lowers what speaks for a value."""
+    problem, of_first = second.problem, first.problem
+    odds = log_odds(problem, first.fit, second.fit, count, beyond, of_first)
+    more_values_win = (odds > 0) is (len(second.fit.coordinates) >= len(first.fit.coordinates))
+    if not more_values_win or not any(e.at_draws for e in problem.evidence):
+        return odds
     machines = machines_of(*((one.problem, one.fit.effects) for one in (first, second)))
-    return encoder_along(problem, machines)
+    return log_odds(problem, first.fit, second.fit, count, beyond, of_first, encoder_along(problem, machines))
 
 
 def gain_between(first: Standing, second: Standing, in_folds: bool = True) -> Comparison:

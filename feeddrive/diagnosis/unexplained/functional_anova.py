@@ -190,6 +190,8 @@ class Sums:
         self._moments: dict[Term | None, FloatArray] = {}
         self._products: dict[tuple[Term | None, Term | None], FloatArray] = {}
         self._left: dict[tuple[Term, ...], FloatArray] = {}
+        self._errors: dict[tuple[Term, ...], float] = {}
+        self._begun: tuple[tuple[Term, ...], FloatArray, FloatArray] | None = None
         self._latest: Remembered[FloatArray] = Remembered(lambda columns: columns.nbytes, COLUMNS)
         self._take(None)
         self._squares = np.array([float(np.sum(self._residual[fold] ** 2)) for fold in self._folds])
@@ -225,10 +227,23 @@ class Sums:
         return self._products[one, other]
 
     def _normal(self, terms: Sequence[Term]) -> tuple[FloatArray, FloatArray]:
-        """Products of all columns of a set, offsets first, and those with the residual: (folds, k, k), (folds, k)."""
-        every: list[Term | None] = [None, *terms]
-        gram = np.concatenate([np.concatenate([self._product(a, b) for b in every], axis=2) for a in every], axis=1)
-        return gram, np.concatenate([self._moments[term] for term in every], axis=1)
+        """Products of all columns of a set, offsets first, and those with the residual: (folds, k, k), (folds, k).
+
+        A round asks for every term behind the same others, whose products are put together once.
+        """
+        first = tuple(terms[:-1])
+        if self._begun is None or self._begun[0] != first:
+            every: list[Term | None] = [None, *first]
+            gram = np.concatenate([np.concatenate([self._product(a, b) for b in every], axis=2) for a in every], axis=1)
+            self._begun = first, gram, np.concatenate([self._moments[term] for term in every], axis=1)
+        _, gram, moment = self._begun
+        if not len(terms):
+            return gram, moment
+        last = terms[-1]
+        beside = np.concatenate([self._product(term, last) for term in (None, *first)], axis=1)
+        own = np.concatenate([beside.transpose(0, 2, 1), self._product(last, last)], axis=2)
+        whole = np.concatenate([np.concatenate([gram, beside], axis=2), own], axis=1)
+        return whole, np.concatenate([moment, self._moments[last]], axis=1)
 
     def _columns(self, terms: Sequence[Term]) -> FloatArray:
         """Columns of length one of a set, offsets first, (n, k)."""
@@ -241,9 +256,8 @@ class Sums:
     def _solved(self, gram: FloatArray, moment: FloatArray) -> FloatArray:
         return np.asarray(np.linalg.solve(gram + RIDGE * np.eye(len(moment)), moment), dtype=np.float64)
 
-    def _fold_values(self, terms: Sequence[Term]) -> list[FloatArray]:
-        """Values fitted without each fold."""
-        grams, moments = self._normal(terms)
+    def _fold_values(self, terms: Sequence[Term], grams: FloatArray, moments: FloatArray) -> list[FloatArray]:
+        """Values fitted without each fold; products as `_normal` gives them."""
         gram, moment = grams.sum(axis=0), moments.sum(axis=0)
         known = np.diag(self._known(terms, gram, moment))
         return [self._solved(gram - g + known, moment - m) for g, m in zip(grams, moments, strict=True)]
@@ -261,17 +275,20 @@ class Sums:
 
     def squared_error(self, terms: Sequence[Term]) -> float:
         """Squared error on blocks not fitted."""
-        total = float(self._squares.sum())
-        for values, gram, moment in zip(self._fold_values(terms), *self._normal(terms), strict=True):
-            total += float(values @ gram @ values - 2 * values @ moment)
-        return total
+        key = tuple(terms)
+        if key not in self._errors:
+            total, normal = float(self._squares.sum()), self._normal(terms)
+            for values, gram, moment in zip(self._fold_values(terms, *normal), *normal, strict=True):
+                total += float(values @ gram @ values - 2 * values @ moment)
+            self._errors[key] = total
+        return self._errors[key]
 
     def left_out(self, terms: Sequence[Term]) -> FloatArray:
         """Residual on blocks not fitted, (n,)."""
         key = tuple(terms)
         if key not in self._left:
             columns, left = self._columns(terms), self._sample.residual.copy()
-            for fold, values in zip(self._folds, self._fold_values(terms), strict=True):
+            for fold, values in zip(self._folds, self._fold_values(terms, *self._normal(terms)), strict=True):
                 rows = self._order[fold]
                 left[rows] -= columns[rows] @ values
             self._left[key] = left
