@@ -216,11 +216,18 @@ def _refined_order(angle: FloatArray, series: FloatArray, order: float) -> float
     """
     width = np.pi / max(float(np.ptp(angle)), 1e-9)  # half the distance of two orders that the travel tells apart
     slow = np.column_stack([np.ones(len(angle)), lead_map(angle, 1.0) / SIZE])
+    others = np.column_stack([slow, series])
+    square = np.eye(2 + slow.shape[1])
+    square[2:, 2:] += slow.T @ slow
+    moment = np.concatenate([np.zeros(2), slow.T @ series])
 
     def missed(n: float) -> float:
-        columns = np.column_stack([np.sin(n * angle), np.cos(n * angle), slow])
-        square = columns.T @ columns + np.eye(columns.shape[1])
-        return -float(series @ (columns @ np.linalg.solve(square, columns.T @ series)))
+        sine = np.stack([np.sin(n * angle), np.cos(n * angle)])
+        beside = sine @ others
+        square[:2, :2] = sine @ sine.T + np.eye(2)
+        square[:2, 2:], square[2:, :2] = beside[:, :-1], beside[:, :-1].T
+        moment[:2] = beside[:, -1]
+        return -float(moment @ np.linalg.solve(square, moment))
 
     low, high = max(order - width, 1e-6), order + width
     return float(minimize_scalar(missed, bounds=(low, high), method="bounded", options={"xatol": 1e-3 * width}).x)
