@@ -20,7 +20,6 @@ from feeddrive.diagnosis.finding.sets import Neighbour, _not_told, members_weigh
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
 from feeddrive.diagnosis.likelihood.set_evidence import (
-    DISCREPANCY,
     Standing,
     declared_cost,
     declining,
@@ -215,27 +214,6 @@ def test_two_effects_that_hide_each_other_are_found_together() -> None:
     assert named(ranked[0], effects) == {"payload", "constant_force"}
     alone = [one for one in ranked if len(one.added) == 1]
     assert ranked[0].gain > 5 + max((one.gain for one in alone), default=-np.inf)
-
-
-def test_an_effect_is_told_from_the_colour_that_it_makes(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A slow effect leaves white noise, and without it the residual is slow: by that colour it would say little.
-
-    It is of 60 deviations, and has some fifteen independent values; a fast one of 30 deviations keeps the only place
-    of the beam where the colour at hand alone is asked.
-    """
-    monkeypatch.setattr("feeddrive.diagnosis.finding.sets.BEAM", 1)
-    columns, _ = drawn(12)
-    slow = uniform_filter1d(columns["payload"], 400, mode="wrap")
-    columns["payload"] = slow / np.std(slow)
-    noise = np.random.default_rng(13).standard_normal(ROWS)
-    measured = noise + (60.0 * columns["payload"] + 30.0 * columns["constant_force"]) / np.sqrt(ROWS)
-    made, nothing = problem(columns, measured), fitted((), columns, measured)
-    effects = (FIRST, SECOND)
-    ranked = neighbours(made, nothing, [attempt(effect, columns, nothing, made) for effect in effects], COUNT)
-    alone = [one for one in ranked if len(one.added) == 1]
-    assert named(alone[0], effects) == {"payload"}
-    # told to a deviation of sixty, by a spectrum that is known to a fifth; one value costs some eight nats
-    assert alone[0].gain == pytest.approx(0.5 * 60.0**2 / (1 + DISCREPANCY * ROWS) - 8.0, rel=0.3)
 
 
 def test_effect_that_stands_in_for_another_is_swapped_and_one_that_no_longer_pays_is_dropped() -> None:

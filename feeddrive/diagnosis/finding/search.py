@@ -129,7 +129,7 @@ def search(
         progress(f"round {number}: {len(found.effects)} effects so far")
         asked = _asked(problem, found, impossible, denied, number)
         near, tried = asked.near, max(tried, asked.now.count)
-        unnamed = of_no_name(problem, found, asked.taken, asked.now.count, asked.now.attempts)
+        unnamed = of_no_name(problem, found, asked.taken, asked.now.count)
         if unnamed is not None:
             problem, found = refitted(*unnamed)
             continue
