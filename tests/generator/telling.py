@@ -120,7 +120,8 @@ PASSES, REST = 12, 0.05
 """Steps of Gauss and Newton at most towards the values that come nearest, and the largest move, in tolerances, that
 ends them. Masses, stiffnesses, frictions, dampings and the torque constant that all are off alike change nothing, so
 that the first steps go far along what is straight near the true values alone: after two of them 42 standard deviations,
-of 7264 that a payload made, seemed to be left that the values do take."""
+of 7264 that a payload made, seemed to be left that the values do take. A twentieth of a tolerance is a twentieth of one
+standard deviation of what a value costs, a two-hundredth of what is asked of an effect."""
 
 FARTHEST = 3.0
 """Tolerances that a value is off by in those simulations at most: three standard deviations of what is known of it."""

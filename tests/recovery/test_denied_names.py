@@ -12,14 +12,15 @@ import pytest
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.certainty.preferred import judged_apart
 from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.finding.attempt import refuse_at_an_end
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging import judge as judge_of
 from feeddrive.diagnosis.judging import veto
 from feeddrive.diagnosis.judging.denied_again import settled_names
-from feeddrive.diagnosis.judging.judge import Judged, Share, prepared_for_judging
+from feeddrive.diagnosis.judging.judge import Judged, Share, prepared_for_judging, share_of
 from feeddrive.diagnosis.judging.veto import ends_reached, not_worse_than_declared, without_denied, worse_by
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
-from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.evidence import UNSEEN, Evidence
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.preparation import prepared
@@ -215,6 +216,26 @@ def test_value_at_the_end_of_what_is_physical_is_no_estimate(rigid: Plant) -> No
     warm = find_effect("viscous_warmup")
     there = [fit(problem, [warm.of(Port.TABLE, share=0.1, time_constant=tau)], iterations=0) for tau in (0.1, 5.0)]
     assert [bool(*ends_reached(problem, one)) for one in there] == [True, False]
+
+
+def test_a_friction_at_an_end_of_its_range_is_not_searched(rigid: Plant) -> None:
+    problem, _, _ = prepared(rigid, [rigid_run("a", Truth())], [], 0.75)
+    bristle, most = find_effect("presliding"), find_effect("presliding").parameter("stiffness").maximum
+    stiff = bristle.of(stiffness=most, damping=0.0, break_away=0.0)
+    with pytest.raises(InputError, match="end of what is physical"):
+        refuse_at_an_end(problem, [stiff])
+    refuse_at_an_end(problem, [bristle.of(stiffness=1e7, damping=0.0, break_away=0.0)])  # ends of none are values
+    refuse_at_an_end(problem, [Payload.of(mass=-0.95 * 60.0)])  # no friction: judging says so
+
+
+@pytest.mark.parametrize("half_width", [1e-3, 5e-3])
+def test_a_place_that_judged_data_do_not_visit_is_not_denied_by_them(rigid: Plant, half_width: float) -> None:
+    """Nothing of it is there, or its tail: neither is a word against it."""
+    problem, evidence, _ = prepared(rigid, [rigid_run("a", Truth())], [one_stroke("b", 2)], 0.75)
+    tight = find_effect("friction_vs_position").of(peak=5.0, centre=-0.05, half_width=half_width)
+    found = Search(problem, fit(problem, [tight], iterations=0), (), (), {})
+    share = share_of(problem, judging(found, evidence), found.fit.effects, 0)
+    assert share.size < UNSEEN and not share.shows and not share.carries
 
 
 def test_fit_of_a_torque_of_the_other_sign_leaves_a_mass(rigid: Plant) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration.beyond import beyond_tolerance
-from feeddrive.diagnosis.calibration.calibrate import calibrated, calibrated_list, with_kept
+from feeddrive.diagnosis.calibration.calibrate import calibrated_list, with_kept
 from feeddrive.diagnosis.calibration.encoder_scores import _scores, encoder_scores
 from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.likelihood.fit import fit
@@ -17,14 +17,11 @@ from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence, from_zero
 from feeddrive.diagnosis.motion.encoder_error import drawn_error, told_of
 from feeddrive.diagnosis.motion.expected_motion import expected_motion
-from feeddrive.diagnosis.preparation import prepared
-from feeddrive.diagnosis.suspicion.logged import declared_hold
-from feeddrive.plant.file.plant_file import read_plant
-from feeddrive.recording import read_recording
 from feeddrive.recording.checks.flaws import quantisation_step
 from feeddrive.simulate.driven import motor_motion
 from feeddrive.typing import FloatArray
-from tests.recovery.fleet.case import ENCODER_NULLS, case
+from tests.recovery.fleet.case import ENCODER_NULLS
+from tests.recovery.fleet.problem import calibrated_case
 
 COARSE = ENCODER_NULLS + 14_021
 """A machine of 1570 kg with 14 bits and a scale of 1 nm, at 500 Hz: its steps show 40 times the noise of its scale."""
@@ -37,10 +34,7 @@ and its damping five."""
 
 @pytest.mark.slow
 def test_a_value_that_one_variance_places_beyond_its_tolerance_is_not_named(tmp_path: Path) -> None:
-    plant_file, fitted, judged = case(LIGHT_TORQUE).write(tmp_path)
-    recordings = [read_recording(path) for path in (fitted, judged)]
-    plant = read_plant(plant_file)
-    problem = calibrated(prepared(plant, recordings[:1], recordings[1:], 0.75, declared_hold(plant, recordings))[0])
+    problem = calibrated_case(LIGHT_TORQUE, tmp_path)
     found = fit(problem, ())
     assert problem.calibration is not None
     assert np.max(np.abs(problem.calibration.coordinates)) > TOLERANCE  # that is where the search has one
@@ -49,10 +43,7 @@ def test_a_value_that_one_variance_places_beyond_its_tolerance_is_not_named(tmp_
 
 @pytest.fixture(scope="module")
 def problem(tmp_path_factory: pytest.TempPathFactory) -> Problem:
-    plant_file, fitted, judged = case(COARSE).write(tmp_path_factory.mktemp("coarse"))
-    plant, recordings = read_plant(plant_file), [read_recording(path) for path in (fitted, judged)]
-    hold = declared_hold(plant, recordings)
-    return calibrated(prepared(plant, recordings[:1], recordings[1:], 0.75, hold)[0])
+    return calibrated_case(COARSE, tmp_path_factory.mktemp("coarse"))
 
 
 def test_intervals_hold_what_the_machine_has(problem: Problem) -> None:

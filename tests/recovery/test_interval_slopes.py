@@ -7,18 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.calibration.calibrate import calibrated, with_kept
+from feeddrive.diagnosis.calibration.calibrate import with_kept
 from feeddrive.diagnosis.certainty.uncertainty import certainty, slopes
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.preparation import prepared
-from feeddrive.diagnosis.suspicion.logged import declared_hold
 from feeddrive.effects.catalogue import EFFECTS
-from feeddrive.plant.file.plant_file import read_plant
-from feeddrive.recording import read_recording
 from feeddrive.typing import FloatArray
-from tests.recovery.fleet.case import case
+from tests.recovery.fleet.problem import calibrated_case
 
 LIGHTER = 700_115
 """A table 250 kg lighter than declared, each other value somewhere in its tolerance."""
@@ -26,10 +22,7 @@ LIGHTER = 700_115
 
 @pytest.fixture(scope="module")
 def problem(tmp_path_factory: pytest.TempPathFactory) -> Problem:
-    plant_file, fitted, judged = case(LIGHTER).write(tmp_path_factory.mktemp("lighter"))
-    plant, recordings = read_plant(plant_file), [read_recording(path) for path in (fitted, judged)]
-    hold = declared_hold(plant, recordings)
-    problem = calibrated(prepared(plant, recordings[:1], recordings[1:], 0.75, hold)[0])
+    problem = calibrated_case(LIGHTER, tmp_path_factory.mktemp("lighter"))
     assert problem.calibration is not None
     # the payload says it of the table's mass
     return with_kept(problem, [value.key != "table_mass" for value in problem.calibration.values])

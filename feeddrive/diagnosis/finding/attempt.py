@@ -173,7 +173,8 @@ def _usable(scene: Scene, problem: Problem, name: str, result: Fit) -> Attempt:
 def refuse_at_an_end(problem: Problem, effects: Sequence[Effect]) -> None:
     """Refuse a friction of which a value has run to the end of its range: judging would deny it.
 
-    A bristle that gives way by a picometre is a sign of the velocity, and takes minutes to simulate.
+    A bristle that gives way by a picometre is a sign of the velocity, and takes minutes to simulate. Other laws become
+    known ones at their ends (`spring_law`, `as_payload`), which the search asks.
 
     Raises:
         InputError: there is such an effect.

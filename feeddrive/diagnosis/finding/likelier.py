@@ -31,7 +31,6 @@ FITTED = 2
 """Sets one move away that are fitted in a round, and one two moves away where slopes say that it is likelier: starts
 are near by design, so that slopes put the likeliest among the first."""
 
-
 ASKED = 3 * FITTED
 """As many where an encoder does not tell the motion: what its steps give is asked of a fitted set alone, and a set that
 slopes put first for it takes no place from a name behind."""
@@ -67,16 +66,17 @@ def likelier(problem: Problem, found: Fit, now: Round, denied: Container[str]) -
     able = [one for one in sets if one.gain > 0]
     at_hand = Standing(problem, found)
     tried: list[Taken | None] = []
-    given = dict[str, float]()  # odds of what was fitted: slopes do not know what the encoder's steps give
+    given = dict[tuple[int, ...], float]()  # odds of names added: slopes do not know what the encoder's steps give
     most = ASKED if any(e.at_draws for e in problem.evidence) else FITTED
     for one in [each for each in able if each.is_next][:most] + [each for each in able[:1] if not each.is_next]:
         if one.is_next and sum(each is not None and each.odds > 0 for each in tried) >= FITTED:
             continue
         if tried and problem.budget.skips("sets of effects that came near"):  # the likeliest in any case
             break
-        tried.append(_fitted(at_hand, one, here, now.count, denied))
-        if tried[-1] is not None:
-            given[tried[-1].name] = tried[-1].odds
+        taken = _fitted(at_hand, one, here, now.count, denied)
+        tried.append(taken)
+        if taken is not None and not one.dropped:
+            given[one.added] = taken.odds
     for attempt in now.attempts:
         if not same_samples(attempt.problem, problem):  # some samples tell less of it: compared on the others
             there = fit(attempt.problem, found.effects, iterations=0)
@@ -86,8 +86,8 @@ def likelier(problem: Problem, found: Fit, now: Round, denied: Container[str]) -
             ]
     best = _best((one for one in tried if one is not None and one.odds > 0), now.count)
     beside = [one for one in sets if not one.dropped and len(one.added) == 1 and one.speaks > 0]
-    named = [(here[one.added[0]].name, one) for one in beside]
-    return best, tuple(Near(name, min(one.gain, given.get(name, one.gain)), one.speaks) for name, one in named)
+    odds = [min(one.gain, given.get(one.added, one.gain)) for one in beside]
+    return best, tuple(Near(here[x.added[0]].name, gain, x.speaks) for x, gain in zip(beside, odds, strict=True))
 
 
 def _fitted(

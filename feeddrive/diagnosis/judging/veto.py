@@ -47,6 +47,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
     write_coordinates,
 )
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison, worse_beyond_scatter
+from feeddrive.diagnosis.likelihood.evidence import UNSEEN
 from feeddrive.diagnosis.likelihood.fit import Fit, fit, linear_step
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, regained
@@ -204,7 +205,7 @@ def _no_gain(found: Search, place: int, share: Share) -> str:
     inside = _left_out_gain(found, place)
     if inside.gain > SURE * inside.standard_error:
         return ""
-    if not share.shows:  # what no judged sample meets may be a passage shorter than a block: its own parts tell it
+    if share.size < UNSEEN:  # no judged sample meets it: it may be a passage shorter than a block, which its parts tell
         parts = _left_out_gain(replace(found, problem=with_short_blocks(found.problem)), place)
         if parts.gain > max(parts.least, SURE * parts.standard_error):
             return ""

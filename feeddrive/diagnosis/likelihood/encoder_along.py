@@ -23,49 +23,40 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
 
-def encoder_along(problem: Problem, machines: tuple[Plant, Plant]) -> float:
-    """v of two machines, that of the set of fewer values first; 0 where every encoder tells its motion.
+def encoder_along(problem: Problem, plain: Plant, other: Plant) -> float:
+    """v of two machines; 0 where every encoder tells its motion, and where no drawn motion can be followed.
 
     Args:
-        problem: recordings, with the declared values of the second machine.
-        machines: with the effects of either set, and the declared values that it stands beside.
+        problem: recordings, with the declared values of the second set.
+        plain: the machine with the set of fewer values, and the declared values that it stands beside.
+        other: that with the other set.
     """
-    draws = max((len(e.at_draws) for e in problem.evidence), default=0)
-    squares = [_along(problem, machines, draw) ** 2 for draw in range(draws)]
-    known = [one for one in squares if np.isfinite(one)]
+    drawn = [e.at_draws for e in problem.evidence]
+    count = max((len(draws) for draws in drawn), default=0)
+    if not count:
+        return 0.0
+    expected, squares = _rows(problem, plain, problem.evidence), []
+    for draw in range(count):
+        at = [draws[draw] if draws else e for draws, e in zip(drawn, problem.evidence, strict=True)]
+        here = _rows(problem, plain, at)
+        difference = _rows(problem, other, at) - here
+        length = float(np.linalg.norm(difference))
+        squares.append((float(difference @ (expected - here)) / length) ** 2 if length > 0 else 0.0)
+    known = [square for square in squares if np.isfinite(square)]
     return float(np.mean(known)) if known else 0.0
 
 
-def _along(problem: Problem, machines: tuple[Plant, Plant], draw: int) -> float:
-    """δ_d' ε_d over the length of δ_d; not a number where a machine cannot follow the motion."""
-    differences, errors = [], []
-    for e in problem.evidence:
-        rows = e.thinned(e.fit_rows)
-        at = e.at_draws[draw] if e.at_draws else e
-        first, second = (e.weighted(problem.predictor.predict(one, at), rows) for one in machines)
-        expected = e.weighted(problem.predictor.predict(machines[0], e), rows)
-        differences.append(second - first)
-        errors.append(expected - first)
-    none = np.zeros(len(problem.numbers))
-    difference, error = (_whitened(problem, np.concatenate([*parts, none])) for parts in (differences, errors))
-    length = float(np.linalg.norm(difference))
-    return float(difference @ error) / length if length > 0 else 0.0
-
-
-def _whitened(problem: Problem, rows: FloatArray) -> FloatArray:
+def _rows(problem: Problem, machine: Plant, at: Sequence[Evidence]) -> FloatArray:
+    """W times what a machine makes of motions, weighed as the recordings are, (m,); no number measured beside them."""
+    parts = [
+        e.weighted(problem.predictor.predict(machine, one), e.thinned(e.fit_rows))
+        for e, one in zip(problem.evidence, at, strict=True)
+    ]
+    rows = np.concatenate([*parts, np.zeros(len(problem.numbers))])
     return rows if problem.whitener is None else problem.whitener.applied(rows)
-
-
-def machines_of(
-    first: tuple[Problem, Sequence[Effect]], second: tuple[Problem, Sequence[Effect]]
-) -> tuple[Plant, Plant]:
-    """Machines of two sets, each beside its own declared values, that with fewer effects first."""
-    by_size = sorted((first, second), key=lambda one: len(one[1]))
-    plain, other = (problem.machine(effects) for problem, effects in by_size)
-    return plain, other

@@ -55,7 +55,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
     left_out_residual,
     model_error_rows,
 )
-from feeddrive.diagnosis.likelihood.encoder_along import encoder_along, machines_of
+from feeddrive.diagnosis.likelihood.encoder_along import encoder_along
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.likelihood.problem import Problem
@@ -260,14 +260,19 @@ def odds_between(first: Standing, second: Standing, count: int) -> float:
 
 
 def _odds_beside_encoder(first: Standing, second: Standing, count: int, beyond: float) -> float:
-    """`log_odds`, what the encoder's steps give counted where it may matter: it only lowers what speaks for a value."""
-    problem, of_first = second.problem, first.problem
-    odds = log_odds(problem, first.fit, second.fit, count, beyond, of_first)
-    more_values_win = (odds > 0) is (len(second.fit.coordinates) >= len(first.fit.coordinates))
-    if not more_values_win or not any(e.at_draws for e in problem.evidence):
+    """`log_odds`, with what the encoder's steps give where the set of more values, or one of as many, is likelier.
+
+    What the data say is smaller for it: a set of fewer values that is likelier by itself needs no simulation.
+    """
+    odds = log_odds(second.problem, first.fit, second.fit, count, beyond, first.problem)
+    more = len(second.fit.coordinates) - len(first.fit.coordinates)
+    if more * odds < 0 or not any(e.at_draws for e in second.problem.evidence):
         return odds
-    machines = machines_of(*((one.problem, one.fit.effects) for one in (first, second)))
-    return log_odds(problem, first.fit, second.fit, count, beyond, of_first, encoder_along(problem, machines))
+    # of as many values, that which leaves more is the one without
+    pair = sorted((first, second), key=lambda one: (len(one.fit.coordinates), -one.fit.squared_error))
+    plain, other = (one.problem.machine(one.fit.effects) for one in pair)
+    encoder = encoder_along(second.problem, plain, other)
+    return log_odds(second.problem, first.fit, second.fit, count, beyond, first.problem, encoder)
 
 
 def gain_between(first: Standing, second: Standing, in_folds: bool = True) -> Comparison:
