@@ -20,8 +20,9 @@ from feeddrive.diagnosis.judging.denied_again import settled_names
 from feeddrive.diagnosis.judging.judge import Judged, Share, prepared_for_judging, share_of
 from feeddrive.diagnosis.judging.veto import ends_reached, not_worse_than_declared, without_denied, worse_by
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.evidence import UNSEEN, Evidence
-from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.base import Effect, Port
@@ -163,6 +164,31 @@ def test_sparing_asks_for_the_interval_still(rigid: Plant) -> None:
     found = Search(problem, fit(problem, [Payload.of(mass=0.05)]), (), (), {})
     kept, _ = without_denied(found, judging(found, evidence), lambda other: judging(other, evidence), ("payload",))
     assert kept.fit.effects == () and "interval" in kept.impossible["payload"]
+
+
+@pytest.mark.parametrize(("other", "gone"), [(0.006, "stribeck"), (0.05, "torque_ripple")], ids=["less", "more"])
+def test_of_two_that_hide_each_other_that_goes_which_is_missed_less(
+    rigid: Plant, monkeypatch: pytest.MonkeyPatch, other: float, gone: str
+) -> None:
+    """Beside a Stribeck drop a ripple is said to have an interval that holds none; each goes where it brings less."""
+    truth = Truth(ripple=0.03)
+    problem, evidence, _ = prepared(rigid, [rigid_run("a", truth)], [rigid_run("b", truth, slow=1.3)], 0.75)
+    found = Search(problem, fit(problem, [RIPPLE, Stribeck.of(delta_force=0.2, velocity=0.02)]), (), (), {})
+    judged = judging(found, evidence)
+    gains = [0.03, other]
+
+    def around_none(problem: Problem, fitted: Fit) -> list[str]:
+        both = len(fitted.effects) == 2
+        return [veto.AROUND_NONE if both and one.name == "torque_ripple" else "" for one in fitted.effects]
+
+    def share(found: Search, judged: Sequence[Judged], place: int) -> Share:
+        comparison = Comparison(gains[place], 1e-3, 0.0)
+        return Share({"motor_torque": gains[place]}, comparison, 10.0, comparison)
+
+    monkeypatch.setattr(veto, "sizes_around_none", around_none)
+    monkeypatch.setattr(veto, "_share", share)
+    denied = veto._first_denied(found, judged, ())
+    assert denied is not None and found.fit.effects[denied.place].name == gone
 
 
 def test_judged_data_tell_two_apart_only_beyond_their_scatter(rigid: Plant) -> None:

@@ -90,7 +90,7 @@ def neighbours(problem: Problem, found: Fit, attempts: Sequence[Attempt], count:
     columns = _Columns(problem, found, attempts, count)
     nothing = Neighbour((), (), 0.0)
     known: dict[tuple[tuple[int, ...], tuple[int, ...]], Neighbour] = {((), ()): nothing}
-    beam, near = [nothing], [nothing]
+    beam, near = [nothing], list[Neighbour]()
     for _ in range(2):
         fresh = []
         for one in beam:
@@ -98,9 +98,11 @@ def neighbours(problem: Problem, found: Fit, attempts: Sequence[Attempt], count:
                 if (dropped, added) not in known:
                     known[dropped, added] = columns.weighed(dropped, added)
                     fresh.append(known[dropped, added])
+        if not near:  # an effect that makes the colour at hand is told from it by what it leaves alone
+            fresh = [columns.weighed_closely(one) for one in fresh]
         beam = sorted(fresh, key=lambda one: -one.gain)[:BEAM]
         near += beam
-    return sorted((columns.weighed_closely(one) for one in near[1:]), key=lambda one: -one.gain)
+    return sorted((one if one.effects else columns.weighed_closely(one) for one in near), key=lambda one: -one.gain)
 
 
 def _moves(

@@ -14,9 +14,10 @@ An effect that the search took is not reported as found where
 Declared values are asked first: no name goes for a channel that is as good with values fitted otherwise.
 
 One name goes at a time, that with the least gain of those that are denied: of two that say the same the other may then
-stand. An effect that differs between the fitted recordings may be absent from the judged one, and is denied by the last
-alone. Where the judged recording is known to differ in a level from the fitted ones (`judged_changes`), gain and
-worsening are asked with that level allowed for.
+stand. So it may where the interval of one that carries holds none beside the other alone (`_instead`). An effect that
+differs between the fitted recordings may be absent from the judged one, and is denied by the last alone. Where the
+judged recording is known to differ in a level from the fitted ones (`judged_changes`), gain and worsening are asked
+with that level allowed for.
 
 A name that takes the place of one that was not denied is not asked for its gain where the judged data do not tell the
 two apart (`spared`): of two laws that predict the same there, a bound on each one's own gain would part them by luck.
@@ -37,6 +38,7 @@ from feeddrive.diagnosis.certainty.one_sided import one_sided
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.attempt import with_short_blocks
 from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.finding.sets import ITERATIONS
 from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
 from feeddrive.diagnosis.likelihood.coordinates import (
     LEFT,
@@ -61,6 +63,9 @@ from feeddrive.units.quantity import format_quantity, percent
 
 CLEARLY_NEEDED = 0.1
 """Share of the squared error that an effect must bring, by one linear step, not to be refitted without it."""
+
+AROUND_NONE = "its interval holds no effect at all"
+"""Why an effect is denied that the fitted data do not tell from none."""
 
 
 @dataclass(frozen=True)
@@ -149,8 +154,9 @@ def _first_denied(found: Search, judged: Sequence[Judged], spared: Collection[st
     as_declared = values_within_tolerance(problem, found.fit)
     pushing = friction_that_pushes(problem, effects)
     reasons = [at_end[i] or idle[i] or around_none[i] or as_declared[i] or pushing[i] for i in named]
+    gains = [share.comparison.gain for share in shares]
     denied = [
-        Denied(i, shares[i].comparison.gain, reason)
+        _instead(found, i, gains) if reason == AROUND_NONE and shares[i].carries else Denied(i, gains[i], reason)
         for i, reason in enumerate(reasons)
         if reason and not _differs(effects, i)
     ]
@@ -159,6 +165,22 @@ def _first_denied(found: Search, judged: Sequence[Judged], spared: Collection[st
         reason = f"with it {worst} is predicted worse than as declared on data not fitted, by more than its scatter"
         denied = [Denied(place, shares[place].comparison.gain, reason)]
     return min(denied, key=lambda one: one.gain, default=None)
+
+
+def _instead(found: Search, place: int, gains: Sequence[float]) -> Denied:
+    """What goes for an effect that carries while its interval holds none: itself, or what makes that interval so wide.
+
+    Of two that say the same either may go, and beside neither is the other told from none. That goes which data not
+    fitted miss less.
+    """
+    effects = found.fit.effects
+    for other in sorted((i for i in range(len(gains)) if gains[i] < gains[place]), key=lambda i: gains[i]):
+        rest = tuple(effect for i, effect in enumerate(effects) if i != other)
+        wide = regained(found.problem, rest)
+        if not sizes_around_none(wide, fit(wide, rest, iterations=ITERATIONS))[place - (other < place)]:
+            words = f"beside it {effects[place].name} is not told from none, which lowers the error more"
+            return Denied(other, gains[other], words)
+    return Denied(place, gains[place], AROUND_NONE)
 
 
 def _share(found: Search, judged: Sequence[Judged], place: int) -> Share:
@@ -279,7 +301,7 @@ def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
         sizes = sorted({int(groups[i]) for i in places if not math.isnan(absent[i])})
         sure = [_is_not_none(known.half_covariance, beyond, half, np.flatnonzero(groups == group)) for group in sizes]
         denied = not (any(sure) or not sizes or is_shift(effect)) and one_sided(problem, fitted, place) is None
-        result.append("its interval holds no effect at all" if denied else "")
+        result.append(AROUND_NONE if denied else "")
         at += count
     return result
 
