@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.likelihood.cross_validation import Prior, compare_left_out, left_out
+from feeddrive.diagnosis.finding.attempt import Attempt
+from feeddrive.diagnosis.likelihood.cross_validation import Prior, compare_left_out, compare_levelled, left_out
+from feeddrive.diagnosis.likelihood.fit import Fit
 from feeddrive.diagnosis.likelihood.folds import FOLDS, kinds_of_motion
 from feeddrive.diagnosis.unexplained.functional_anova import Sample, Sums
 from feeddrive.diagnosis.unexplained.terms import Form, Term
@@ -111,3 +113,14 @@ def test_kinds_of_motion() -> None:
     speed = np.concatenate([np.zeros(1000), stroke, chirp, reversal])
     assert kinds_of_motion(speed, (time / 0.5).astype(int))[[0, 1, 3, 4, 5]].tolist() == [0, 0, 1, 2, 2]
     assert kinds_of_motion(speed, (time / 1.0).astype(int))[3] == 3
+
+
+@pytest.mark.parametrize(("law", "pays"), [(0.45, True), (0.0, False)])
+def test_a_law_that_one_block_meets_roughly_pays_by_the_others(law: float, pays: bool) -> None:
+    """One block holds most of the error and of the law's misfit, and alone makes the scatter of the whole."""
+    roughly = np.where(IN_BLOCK, 20.0, 0.0) * OTHER
+    before, after = NOISE + law * SHAPE + roughly, NOISE + 0.7 * roughly
+    plain, evenly = (of(before, after, BLOCK) for of in (compare_left_out, compare_levelled))
+    made = Attempt("law", Fit((), after, np.zeros((ROWS, 0)), np.zeros(0)), plain, None, evenly)  # type: ignore[arg-type]
+    assert plain.gain > plain.least and not plain.pays
+    assert made.pays is pays

@@ -91,7 +91,8 @@ def attempt(effect: Effect, columns: dict[str, FloatArray], found: Fit, made: An
     """A candidate at its start, beside a set that stays as it is."""
     slopes, held = columns[effect.name][:, None], len(found.effects)
     start = Fit((*found.effects, effect), found.residual, slopes, np.zeros(1), held)
-    return Attempt(effect.name, start, Comparison(0.0, 0.0, 0.0), made)
+    nothing = Comparison(0.0, 0.0, 0.0)
+    return Attempt(effect.name, start, nothing, made, nothing)
 
 
 def drawn(seed: int, *sizes: float, likeness: float = 0.0) -> tuple[dict[str, FloatArray], FloatArray]:

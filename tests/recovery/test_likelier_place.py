@@ -46,8 +46,9 @@ def test_both_ports_of_a_law_are_candidates() -> None:
     plant = axis_plant("bench")
     evidence = prepare(pair("bench", "null")[0], plant, 1.0)
     problem = Problem(plant, (evidence,), AxisPredictor())
+    paying = Comparison(0.1, 0.0, 0.0)
     tried = [
-        Attempt("viscous_warmup", fit(problem, [warmup(port)], iterations=0), Comparison(0.1, 0.0, 0.0), problem)
+        Attempt("viscous_warmup", fit(problem, [warmup(port)], iterations=0), paying, problem, paying)
         for port in (TABLE, SCREW, SCREW)
     ]
     assert [one.fit.effects[-1].port for one in _best_per_place(tried)] == [TABLE, SCREW]

@@ -19,6 +19,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
     LEAST_GAIN,
     Comparison,
     compare_left_out,
+    compare_levelled,
     least_gain,
     left_out_residual,
 )
@@ -65,6 +66,7 @@ class Attempt:
         fit: of all free effects.
         comparison: against the effects found before.
         problem: recordings with the samples that this candidate can predict.
+        evenly: the comparison with every block over what is left of it.
         starts: how many were tried.
     """
 
@@ -72,7 +74,16 @@ class Attempt:
     fit: Fit
     comparison: Comparison
     problem: Problem
+    evenly: Comparison
     starts: int = 1
+
+    @property
+    def pays(self) -> bool:
+        """Whether it brings enough on blocks left out, as they are or each over the level of what is left of it.
+
+        A brief passage that a law meets roughly has nearly all of the error, and nearly all of its chance.
+        """
+        return self.comparison.pays or (self.comparison.gain > self.comparison.least and self.evenly.pays)
 
     def for_the_record(self) -> Attempt:
         """The attempt without series and slopes, which its round alone needs: those of all rounds fill gigabytes."""
@@ -250,8 +261,9 @@ def compared(problem: Problem, name: str, result: Fit, before: Sequence[Effect])
     reference = _reference(problem, before, result)
     without = left_out_residual(problem, reference, blocks)
     errors = left_out_residual(problem, result, blocks)
-    comparison = compare_left_out(without, errors, blocks, least_gain(problem, without, errors))
-    return Attempt(name, result, comparison, problem)
+    least = least_gain(problem, without, errors)
+    comparison, evenly = (of(without, errors, blocks, least) for of in (compare_left_out, compare_levelled))
+    return Attempt(name, result, comparison, problem, evenly)
 
 
 def _free(result: Fit, before: Sequence[Effect]) -> list[bool]:

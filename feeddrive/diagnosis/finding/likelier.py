@@ -117,7 +117,7 @@ def _fitted(
         refuse_at_an_end(own, result.effects[len(kept) :])
         refuse_of_no_hours(own, result.effects)
         taken = Taken(own, result, name, _odds(at_hand, Standing(own, result), count))
-        if not one.added or one.dropped or compared(own, name, result, found.effects).comparison.pays:
+        if not one.added or one.dropped or compared(own, name, result, found.effects).pays:
             return taken
         anew = of_likelier_law(taken, count, denied)
         if anew is None or anew is taken or not gain_between(at_hand, anew).pays:
