@@ -206,6 +206,11 @@ class Effect:
             result[key] = value
         return result
 
+    @property
+    def curved(self) -> Effect:
+        """The law that differs over `curve_over` where this one has another form: itself, or a part of it."""
+        return self
+
     def with_values(self, **values: Value) -> Self:
         """A copy with some values replaced, not checked against the range (fits may touch its edge)."""
         return replace(self, values={**self.values, **values})

@@ -68,6 +68,11 @@ def log_odds_of_curves(problem: Problem, found: Fit, count: int, curved: Problem
     return _log_odds(problem, found, count, parts)
 
 
+def open_curves(problem: Problem) -> tuple[str, ...]:
+    """Laws whose curves are open in any recording."""
+    return tuple(sorted({name for e in problem.evidence for name in e.curves}))
+
+
 def with_curves_of(problem: Problem, effects: Sequence[Effect]) -> Problem:
     """The problem with no curves open but those of these laws."""
     names = {effect.name for effect in effects}

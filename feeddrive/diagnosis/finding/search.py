@@ -22,7 +22,7 @@ from feeddrive.diagnosis.finding.elsewhere import at_likelier_place
 from feeddrive.diagnosis.finding.likelier import Near, Taken, likelier, of_likelier_law, with_play
 from feeddrive.diagnosis.finding.materiality import is_material_here
 from feeddrive.diagnosis.finding.members import Member, members_of
-from feeddrive.diagnosis.finding.open_map import with_curves_of
+from feeddrive.diagnosis.finding.open_map import open_curves, with_curves_of
 from feeddrive.diagnosis.finding.refitting import (
     as_payload,
     at_rest,
@@ -121,6 +121,7 @@ def search(
     denied = {**start.impossible} if start is not None else {}
     impossible: dict[str, str] = {**denied}
     met: set[tuple[Member, ...]] = set()
+    forms: set[tuple[tuple[Member, ...], tuple[str, ...]] | None] = set()
     near: tuple[Near, ...] = ()
     tried = start.tried if start is not None else 0
     problem, found = balanced(problem, found)
@@ -129,8 +130,10 @@ def search(
         progress(f"round {number}: {len(found.effects)} effects so far")
         asked = _asked(problem, found, impossible, denied, number)
         near, tried = asked.near, max(tried, asked.now.count)
-        unnamed = of_no_name(problem, found, asked.taken, asked.now.count)
-        if unnamed is not None:
+        unnamed = of_no_name(problem, found, asked.taken, asked.now.count, asked.now.attempts)
+        form = None if unnamed is None else (members_of(unnamed[1].effects), open_curves(unnamed[0]))
+        if unnamed is not None and form not in forms:
+            forms.add(form)
             problem, found = refitted(*unnamed)
             continue
         after = _refitted_with(asked, found)

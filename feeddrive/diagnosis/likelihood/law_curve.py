@@ -4,12 +4,12 @@ No law is exactly ours. A drag that differs between the directions grows with a 
 with another tail, a machine warms up with two time constants. What is left beside the law is then its own, and no
 second effect. Two families hold such forms, with a deviation of one each: as large as what the law itself does.
 
-    s P_k(u)              law over a variable:      u from -1 to 1 over what the recording visits, k = 1 to 3
+    s P_k(u)              law over a variable:      u from -1 to 1 over what is visited, k = 1 to 3, 0 too of a part
     s(3^m l) - s(l)       law of a scale l:         m = -2, -1, 1, 2
 
 | symbol | meaning | unit |
 |---|---|---|
-| s | what the law makes of the channels beside the other effects | that of the channel |
+| s | what the law, or its part that differs (`Effect.curved`), makes of the channels | that of the channel |
 | P_k | Legendre polynomial | 1 |
 | u | variable that the law acts over: position, or logarithm of a speed or torque, over two decades | 1 |
 | l | velocity, time constant, width that the law has | its own |
@@ -37,7 +37,7 @@ from feeddrive.effects.base import Effect, number
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
-HALF_WAVES = (1, 2, 3)
+HALF_WAVES: tuple[int, ...] = (1, 2, 3)
 """Half waves of the factor over what is visited: slower than two periods, as a lead map; faster is no form of a law."""
 
 STEPS = (1 / 9, 1 / 3, 3.0, 9.0)
@@ -78,7 +78,11 @@ def law_curves(problem: Problem, effects: Sequence[Effect], place: int) -> dict[
             u = _visited({**problem.predictor.variables(plant, e), **with_law}.get(law.curve_over), law)
             if u is None:  # its variable is not predicted here
                 return {}
-            parts = [{name: own[name] * np.polynomial.Legendre.basis(k)(u) for name in e.channels} for k in HALF_WAVES]
+            over, waves = own, HALF_WAVES
+            if law.curved is not law:  # a part of it may be another in the mean as well
+                part = problem.predictor.predict(problem.machine([*others, law.curved]), e)
+                over, waves = {name: part[name] - bare[name] for name in e.channels}, (0, *HALF_WAVES)
+            parts = [{name: over[name] * np.polynomial.Legendre.basis(k)(u) for name in e.channels} for k in waves]
         found[e] = [beside(part, own, e) for part in parts]
     return found
 

@@ -15,7 +15,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature, forward
+from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature, forward, number
+from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.typing import Expression
 
 
@@ -29,6 +30,12 @@ class CoulombAsymmetry(FrictionEffect):
     signature = Signature(
         ("motor_torque", "table_position"), "sign of table_velocity", ("constant_force", "friction_deviation")
     )
+    curve_over = "table_velocity"
+
+    @property
+    def curved(self) -> ConstantForce:
+        """The constant force dF/2: a difference of the directions that is another at another speed is such a force."""
+        return ConstantForce.of(force=0.5 * number(self.values["delta_force"]))
 
     def level(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Level that it adds [N]."""

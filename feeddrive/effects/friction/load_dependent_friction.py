@@ -36,6 +36,7 @@ class LoadDependentFriction(FrictionEffect):
         ("motor_torque", "table_position"), "transmitted force", ("friction_deviation", "nut_friction", "payload")
     )
     reads_force = True
+    curve_over = "motor_torque"
 
     def least_level(self, radius: float) -> float:
         """0 N m, without load."""
