@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.finding.attempt import compared
-from feeddrive.diagnosis.finding.curve_in_place import of_its_own_form, of_no_name
+from feeddrive.diagnosis.finding.curve_in_place import of_its_own_form
 from feeddrive.diagnosis.finding.likelier import Taken
 from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_curves, with_curves_of
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
@@ -102,21 +101,6 @@ def test_the_curve_of_a_law_is_asked_before_a_set_that_lacks_the_law() -> None:
     assert of_its_own_form(problem, alone, replace(fewer, odds=2 * odds), COUNT) is None
     both = fit(problem, [*alone.effects, *others.effects])  # names that come beside a law are asked otherwise
     assert of_its_own_form(problem, alone, replace(fewer, fit=both), COUNT) is None
-
-
-def test_one_law_with_its_curve_is_asked_before_two_that_share_what_it_takes() -> None:
-    problem = problem_of(SOFT)
-    nothing = fit(problem, ())
-    alone = fit(problem, [start("coulomb_asymmetry")])
-    others = fit(problem, [start("viscous_asymmetry"), EFFECTS["stribeck"].of(delta_force=-5.0, velocity=0.01)])
-    odds = log_odds(problem, nothing, others, COUNT)
-    two = Taken(problem, others, "viscous_asymmetry with stribeck", odds)
-    attempt = compared(problem, "coulomb_asymmetry", alone, ())
-    opened = of_no_name(problem, nothing, two, COUNT, [attempt])
-    assert opened is not None
-    assert [effect.name for effect in opened[1].effects] == ["coulomb_asymmetry"]
-    assert opened[0].evidence[0].curves.keys() == {"coulomb_asymmetry"}
-    assert opened[1].squared_error <= others.squared_error
 
 
 def test_laws_at_other_scales_follow_a_longer_tail() -> None:
