@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
-from feeddrive.diagnosis.motion.lead_map import SIZE, lead_map
 from feeddrive.diagnosis.starts.residual_readings import strongest_orders
+from feeddrive.diagnosis.unexplained.sine_order import SineOrder
 from feeddrive.diagnosis.unexplained.view import View
 from feeddrive.typing import FloatArray
 
@@ -188,14 +187,14 @@ def sines(views: Sequence[View]) -> Callable[[FloatArray], list[Term]]:
     if "motor_angle" not in view.values:
         return lambda left: []
     angle, direction = view.values["motor_angle"][view.rows], view.values["direction"][view.rows]
-    highest = _highest(view)
+    highest, orders = _highest(view), SineOrder(angle)
 
     def suggest(left: FloatArray) -> list[Term]:
         own = left[first : first + len(angle)]
         result = []
         for times, series in (("", own), ("direction", own * direction)):
             for order in strongest_orders(angle, series, highest, SINES):
-                better = _refined_order(angle, series, order)
+                better = orders.near(order, series)
                 result.append(Term(Form.SINE, "motor_angle", times, (2 * np.pi / better,)))
         return result
 
@@ -207,30 +206,6 @@ def _highest(view: View) -> float:
     step = view.evidence.recording.sample_time
     fastest = float(np.abs(np.diff(view.values["motor_angle"])).max()) / step
     return float(np.pi / step / fastest) if fastest > 0 else 1.0
-
-
-def _refined_order(angle: FloatArray, series: FloatArray, order: float) -> float:
-    """The order at which a sine fits best beside a slow curve, near a peak of the periodogram.
-
-    What is left may be without a lead map (`motion.lead_map`), and without its curve the order would be off.
-    """
-    width = np.pi / max(float(np.ptp(angle)), 1e-9)  # half the distance of two orders that the travel tells apart
-    slow = np.column_stack([np.ones(len(angle)), lead_map(angle, 1.0) / SIZE])
-    others = np.column_stack([slow, series])
-    square = np.eye(2 + slow.shape[1])
-    square[2:, 2:] += slow.T @ slow
-    moment = np.concatenate([np.zeros(2), slow.T @ series])
-
-    def missed(n: float) -> float:
-        sine = np.stack([np.sin(n * angle), np.cos(n * angle)])
-        beside = sine @ others
-        square[:2, :2] = sine @ sine.T + np.eye(2)
-        square[:2, 2:], square[2:, :2] = beside[:, :-1], beside[:, :-1].T
-        moment[:2] = beside[:, -1]
-        return -float(moment @ np.linalg.solve(square, moment))
-
-    low, high = max(order - width, 1e-6), order + width
-    return float(minimize_scalar(missed, bounds=(low, high), method="bounded", options={"xatol": 1e-3 * width}).x)
 
 
 def finer_steps(views: Sequence[View]) -> Callable[[Term], list[Term]]:
