@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.unexplained import functional_anova
 from feeddrive.diagnosis.unexplained.functional_anova import Found, Sample, decompose
 from feeddrive.diagnosis.unexplained.terms import Form, Term, hats
 from feeddrive.diagnosis.unexplained.view import Floor, excess, travel_since_reversal
@@ -50,6 +51,23 @@ def taken_apart(residual: FloatArray, terms: Sequence[Term] = TERMS) -> tuple[Fo
 def test_noise_is_left_alone(seed: int, correlation: float) -> None:
     """White noise, and noise whose correlation reaches over 0.02 s: far under a block, far over a sample."""
     assert taken_apart(coloured(np.random.default_rng(seed), correlation)) == ()
+
+
+def test_terms_that_take_each_others_place_come_to_an_end(
+    generator: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each of two terms pays beside the other, and each is said to need no other beside it."""
+    monkeypatch.setattr(functional_anova, "_needed", lambda sums, chosen, new: [])
+    rounds = iter(range(10))
+
+    def proposed(left: FloatArray) -> list[Term]:
+        assert next(rounds, None) is not None, "it goes on and on"
+        return []
+
+    residual = 3.0 * VALUES["direction"] + 20.0 * (POSITION - 0.2) + coloured(generator, 0.5)
+    blocks, offsets = (TIME / BLOCK).astype(np.int64), np.ones((len(TIME), 1))
+    sample = Sample(residual, blocks, offsets, lambda term: term.columns(VALUES), 1.0, 0.005)
+    assert len(decompose(sample, TERMS, proposed, lambda term: [])) == 1
 
 
 def test_an_additive_function_is_found_with_its_values(generator: np.random.Generator) -> None:

@@ -95,7 +95,10 @@ def decompose(
         finer = refined(winner)
         sums.add(finer)
         winner = min([winner, *finer], key=lambda term: sums.squared_error([*chosen, term]))
-        chosen, alike[winner] = [*_needed(sums, chosen, winner), winner], others
+        following = [*_needed(sums, chosen, winner), winner]
+        if sums.squared_error(following) >= sums.squared_error(chosen):
+            break  # terms that took each other's place in turn would do so for ever
+        chosen, alike[winner] = following, others
     shares = {term: sums.compared([c for c in chosen if c != term], chosen).gain for term in chosen}
     scale = {term: sums.left_out([c for c in chosen if c != term]) for term in chosen}
     whole = float(np.sum(sums.left_out([]) ** 2))
