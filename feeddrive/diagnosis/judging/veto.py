@@ -156,7 +156,9 @@ def _first_denied(found: Search, judged: Sequence[Judged], spared: Collection[st
     reasons = [at_end[i] or idle[i] or around_none[i] or as_declared[i] or pushing[i] for i in named]
     gains = [share.comparison.gain for share in shares]
     denied = [
-        _instead(found, i, gains) if reason == AROUND_NONE and shares[i].carries else Denied(i, gains[i], reason)
+        _instead(found, i, gains)
+        if shares[i].carries and around_none[i] and not at_end[i]
+        else Denied(i, gains[i], reason)
         for i, reason in enumerate(reasons)
         if reason and not _differs(effects, i)
     ]
@@ -174,7 +176,8 @@ def _instead(found: Search, place: int, gains: Sequence[float]) -> Denied:
     fitted miss less.
     """
     effects = found.fit.effects
-    for other in sorted((i for i in range(len(gains)) if gains[i] < gains[place]), key=lambda i: gains[i]):
+    less = [i for i in range(len(gains)) if gains[i] < gains[place] and not _differs(effects, i)]
+    for other in sorted(less, key=lambda i: gains[i]):
         rest = tuple(effect for i, effect in enumerate(effects) if i != other)
         wide = regained(found.problem, rest)
         if not sizes_around_none(wide, fit(wide, rest, iterations=ITERATIONS))[place - (other < place)]:

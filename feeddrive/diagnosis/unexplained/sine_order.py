@@ -53,8 +53,11 @@ class SineOrder:
         """The order at which a sine fits a series best.
 
         Args:
-            order: of a peak [1 per radian of the angle's unit].
+            order: of a peak, periods per revolution.
             series: (n,), any unit.
+
+        Returns:
+            The order, within half of what the travel tells apart about the peak.
         """
         once, twice = self._sums(order, series)
         square, moment = self._square.copy(), np.concatenate([np.zeros(2), self._slow @ series])
