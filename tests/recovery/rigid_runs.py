@@ -1,6 +1,6 @@
 """Recordings of a rigid axis written down in closed form: motion a sum of sines, torque by Newton's law.
 
-    T = r (M a + Fc tanh(v / v0) + b v + F0) + noise,   r = lead / 2 pi
+    T = r (M a + (Fc + P exp(-((x - c) / w)^2)) tanh(v / v0) + b v + F0) + noise,   r = lead / 2 pi
 
 The torque of a sample is that at the middle of its hold. Nothing of the package takes part.
 """
@@ -38,13 +38,18 @@ viscous = "{VISCOUS} N s/m"
 
 @dataclass(frozen=True)
 class Truth:
-    """What one recording has otherwise: factors on friction, a mass [kg], a force [N], a ripple [N m] of order 3."""
+    """What one recording has otherwise.
+
+    Factors on friction, a mass [kg], a force [N], a ripple [N m] of order 3, a tight place: peak [N], centre and half
+    width [m].
+    """
 
     coulomb: float = 1.0
     viscous: float = 1.0
     mass: float = 0.0
     force: float = 0.0
     ripple: float = 0.0
+    bump: tuple[float, float, float] = (0.0, 0.0, 1.0)
     seed: int = 1
 
 
@@ -55,7 +60,9 @@ def rigid_run(name: str, truth: Truth, seconds: float = 12.0, slow: float = 1.0,
     _, speed, acceleration = _motion(time + 0.5 * step, slow)
     middle, _, _ = _motion(time + 0.5 * step, slow)
     r = LEAD / (2 * math.pi)
-    friction = truth.coulomb * COULOMB * np.tanh(speed / SMOOTH) + truth.viscous * VISCOUS * speed
+    peak, centre, width = truth.bump
+    level = truth.coulomb * COULOMB + peak * np.exp(-(((middle - centre) / width) ** 2))
+    friction = level * np.tanh(speed / SMOOTH) + truth.viscous * VISCOUS * speed
     torque = r * ((MASS + truth.mass) * acceleration + friction + truth.force)
     torque += truth.ripple * np.sin(3 * middle / r)
     torque += NOISE * np.random.default_rng(truth.seed).standard_normal(len(time))

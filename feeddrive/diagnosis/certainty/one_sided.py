@@ -20,6 +20,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from feeddrive.diagnosis.certainty.profile import TINY, profiled, size_beside_shape
 from feeddrive.diagnosis.certainty.uncertainty import Certainty, Interval, certainty, intervals
 from feeddrive.diagnosis.likelihood.coordinates import (
     absent_coordinates,
@@ -47,9 +48,6 @@ FARTHEST = 0.01
 HALVINGS = 5
 """Of the last step: a lower end is told to less than a per cent."""
 
-TINY = 1e-6
-"""Of a size without an end of its range: the size over what it is not asked beyond."""
-
 OPEN = 1000.0
 """End of an interval over its other one from which nothing recorded ends it."""
 
@@ -63,11 +61,11 @@ def all_intervals(problem: Problem, fitted: Fit, known: Certainty) -> Spans:
     """Intervals of 95 % as `intervals` has them, and by the likelihood where a slope tells nothing of a size."""
     spans = intervals(problem, fitted, known)
     for place, effect in enumerate(fitted.effects):
-        at = _coordinate(problem, fitted, place)
-        half = np.sqrt(known.half_covariance[at, at]) if at is not None else 0.0
-        if at is None or half < fitted.coordinates[at]:
+        of_its_own = _coordinate(problem, fitted, place)
+        at = of_its_own if of_its_own is not None else size_beside_shape(problem, fitted, place)
+        if at is None or np.sqrt(known.half_covariance[at, at]) < abs(fitted.coordinates[at]):
             continue
-        ends = one_sided(problem, fitted, place)
+        ends = profiled(problem, fitted, place) if of_its_own is None else one_sided(problem, fitted, place)
         if ends is not None:
             moved = [_with(problem, fitted, at, end)[place] for end in ends]
             (key,) = [k for k in effect.values if moved[0].values[k] != effect.values[k]]

@@ -20,6 +20,7 @@ Newey and West, Econometrica 55 (1987) 703 (blocks).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,13 +71,29 @@ class Certainty:
         return scaled
 
 
-def certainty(problem: Problem, fitted: Fit) -> Certainty:
-    """How well the coordinates of a fit of all effects are known; k is 0 where nothing was fitted."""
-    if not fitted.jacobian.shape[1]:
-        return Certainty(np.zeros((0, 0)), np.zeros(0))
-    if not fitted.effects:
+def certainty(problem: Problem, fitted: Fit, held: Sequence[int] = ()) -> Certainty:
+    """How well the coordinates of a fit of all effects are known; k is 0 where nothing was fitted.
+
+    Args:
+        problem: recordings.
+        fitted: effects.
+        held: coordinates that stay where they are: the others' covariance is that beside them, their own is 0.
+    """
+    count = fitted.jacobian.shape[1]
+    if not count or not fitted.effects:
         return Certainty(np.zeros((0, 0)), np.zeros(0))
     jacobian = slopes(problem, fitted)
+    if not held:
+        return _certainty(problem, fitted, jacobian)
+    free = np.setdiff1d(np.arange(count), held)
+    known = _certainty(problem, fitted, jacobian[:, free])
+    covariance, reach = np.zeros((count, count)), np.ones(count)
+    covariance[np.ix_(free, free)], reach[free] = known.covariance, known.reach
+    return Certainty(covariance, reach)
+
+
+def _certainty(problem: Problem, fitted: Fit, jacobian: FloatArray) -> Certainty:
+    """How well coordinates are known of which these are the slopes, (m, k)."""
     inverse = inverse_information(jacobian.T @ jacobian)
     rows = [evidence.fit_rows for evidence in problem.evidence]
     middle = score_covariance(problem.evidence, rows, fitted.residual, jacobian)

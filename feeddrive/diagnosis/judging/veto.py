@@ -35,7 +35,7 @@ from scipy.special import chdtri
 from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
 from feeddrive.diagnosis.calibration.stated import is_within_tolerance, without_effects
 from feeddrive.diagnosis.certainty.one_sided import one_sided
-from feeddrive.diagnosis.certainty.uncertainty import certainty
+from feeddrive.diagnosis.certainty.uncertainty import Certainty, certainty
 from feeddrive.diagnosis.finding.attempt import with_short_blocks
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import ITERATIONS
@@ -289,21 +289,27 @@ def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
     """Per effect, a sentence where the 95 % intervals of all its sizes hold the absent effect; else empty.
 
     Of components and nodes that belong together the whole is asked: their squares over their variances, against the
-    same quantile. Of a size whose slope tells nothing the likelihood is asked (`one_sided`).
+    same quantile. Beside none of it the place of a tight place or the order of a ripple mean nothing, and whether it
+    is there is asked with them as they are; which of them it is the likelihood of the set has paid for: Davies,
+    Biometrika 64 (1977) 247. Of a size whose slope tells nothing the likelihood is asked (`one_sided`).
     """
     if not fitted.effects:
         return []
     known = certainty(problem, fitted)
     absent, groups = absent_coordinates(fitted.effects, problem.plant)
     beyond = fitted.coordinates - absent
-    half = np.sqrt(np.diag(known.half_covariance))
     result, at = [], 0
     for place, effect in enumerate(fitted.effects):
         count = len(read_coordinates([effect], problem.plant))
-        places = range(at, at + count)
+        places = np.arange(at, at + count)
         sizes = sorted({int(groups[i]) for i in places if not math.isnan(absent[i])})
-        sure = [_is_not_none(known.half_covariance, beyond, half, np.flatnonzero(groups == group)) for group in sizes]
-        denied = not (any(sure) or not sizes or is_shift(effect)) and one_sided(problem, fitted, place) is None
+        nodes = [np.flatnonzero(groups == group) for group in sizes]
+        shapes = [int(i) for i in places if math.isnan(absent[i])]
+        sure = any(_is_not_none(known, beyond, group) for group in nodes) or not sizes or is_shift(effect)
+        if not sure and shapes:
+            there = certainty(problem, fitted, shapes)
+            sure = any(_is_not_none(there, beyond, group) for group in nodes)
+        denied = not sure and one_sided(problem, fitted, place) is None
         result.append(AROUND_NONE if denied else "")
         at += count
     return result
@@ -327,11 +333,11 @@ def values_within_tolerance(problem: Problem, fitted: Fit) -> list[str]:
     ]
 
 
-def _is_not_none(covariance: FloatArray, beyond: FloatArray, half: FloatArray, group: IntegerArray) -> bool:
+def _is_not_none(known: Certainty, beyond: FloatArray, group: IntegerArray) -> bool:
     """Whether a group of coordinates is distinguished from none."""
+    part = known.half_covariance[np.ix_(group, group)]
     if len(group) == 1:
-        return bool(abs(beyond[group[0]]) > half[group[0]])
-    part = covariance[np.ix_(group, group)]
+        return bool(abs(beyond[group[0]]) > math.sqrt(part[0, 0]))
     # half widths are 1.96 standard deviations
     square = float(beyond[group] @ np.linalg.pinv(part, hermitian=True) @ beyond[group]) * 1.96**2
     return square > float(chdtri(len(group), 0.05))

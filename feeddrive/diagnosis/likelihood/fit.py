@@ -61,7 +61,10 @@ class Fit:
         return _squared(self.residual)
 
 
-def fit(problem: Problem, effects: Sequence[Effect], free: Sequence[bool] | None = None, iterations: int = 12) -> Fit:
+def fit(
+    problem: Problem, effects: Sequence[Effect], free: Sequence[bool] | None = None, iterations: int = 12,
+    still: Sequence[int] = (),
+) -> Fit:  # fmt: skip
     """Fit the free effects by Levenberg-Marquardt, starting from their values.
 
     Args:
@@ -69,6 +72,7 @@ def fit(problem: Problem, effects: Sequence[Effect], free: Sequence[bool] | None
         effects: beyond the declared ones.
         free: which are fitted, those that are not first; all if None.
         iterations: at most.
+        still: coordinates of the free effects that stay as they are.
 
     Returns:
         The fit, its Jacobian taken at the end.
@@ -83,7 +87,7 @@ def fit(problem: Problem, effects: Sequence[Effect], free: Sequence[bool] | None
             break
         if jacobian.shape[1] == 0 or not np.all(np.isfinite(jacobian)) or not np.isfinite(at.squared_error):
             break
-        lower = _lower(problem, at, chosen, jacobian, damping)
+        lower = _lower(problem, at, chosen, jacobian, damping, still)
         damping = lower.damping
         if lower.state is None:
             if exact:
@@ -142,12 +146,15 @@ class _Lower:
     damping: float
 
 
-def _lower(problem: Problem, at: _State, free: Sequence[bool], jacobian: FloatArray, damping: float) -> _Lower:
+def _lower(
+    problem: Problem, at: _State, free: Sequence[bool], jacobian: FloatArray, damping: float, still: Sequence[int]
+) -> _Lower:
     """A damped step inside the physical range, damped more until it lowers the squared error."""
     measured = at.predicted + at.residual
     moved = [effect for effect, is_free in zip(at.effects, free, strict=True) if is_free]
     start = read_coordinates(moved, problem.plant)
     low, high = coordinate_ends(moved, problem.plant)
+    low[list(still)] = high[list(still)] = start[list(still)]
     prior = _prior(moved, problem.plant)
     for _ in range(5):
         step = inside_step(jacobian, at.residual, damping, low - start, high - start, prior)
