@@ -22,6 +22,7 @@ from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.denied_again import settled_names
 from feeddrive.diagnosis.judging.effect_results import effect_results, refused_effects
 from feeddrive.diagnosis.judging.judge import Judged, channel_results, judged_recordings, prepared_for_judging, share_of
+from feeddrive.diagnosis.judging.law_tables import with_law_tables, without_tables
 from feeddrive.diagnosis.judging.result import (
     Diagnosis,
     FileStamp,
@@ -159,8 +160,10 @@ def _reported(
     alike = ambiguous_sets(found, settled.rivals)
     compared, known = compared_recordings(searched, judged), certainty(found.problem, found.fit)
     there, with_changes, allowed = compared.allowing(found, judged)  # what is stated to differ is not left
-    rest = explain_rest(there, with_changes, allowed, channel_results(there, allowed))
-    after = with_carried(judged, *rest.effects)
+    bare, plain = without_tables(there, with_changes, allowed)
+    tables = found.problem.tables_of(found.fit.effects)
+    rest = explain_rest(bare, with_changes, plain, channel_results(bare, plain), tables)
+    after = with_carried(without_tables(found.problem, found.fit.effects, judged)[1], *rest.effects)
     unexplained = rest.unexplained if allowed is judged else beside_changes(rest.unexplained)
     spans = all_intervals(found.problem, found.fit, known)
     effects = machine_as_last(searched, compared.listed)
@@ -261,6 +264,9 @@ def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[
     evidence = [in_told_steps(one, machine, found.problem.predictor) for one in evidence]
     progress("judging on data not fitted")
     judged, rehomed = _judged(found, evidence)
+    if searched.changes is None:
+        found = with_law_tables(found, judged, lambda other: _judged(other, evidence)[0])
+        judged, rehomed = _judged(found, evidence)
     if (fewer := without_stand_ins(found, judged)) is not found:
         found = fewer
         judged, rehomed = _judged(found, evidence)

@@ -9,17 +9,32 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.likelier import Taken
 from feeddrive.diagnosis.finding.members import member, members_of
-from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_map, with_curves_of
+from feeddrive.diagnosis.finding.open_map import (
+    likeliest_curve,
+    log_odds_of_map,
+    open_curves,
+    with_curves_anew,
+    with_curves_of,
+)
 from feeddrive.diagnosis.finding.refitting import refitted
+from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.law_curve import has_curve
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, log_odds, odds_between
 from feeddrive.diagnosis.motion.predictability import has_play
+
+TURNS = 3
+"""Times that curves are taken anew at most."""
+
+ALIKE = 0.2
+"""Share by which a law may have changed for its curve to stay: a deviation of one is then wrong by a fifth."""
 
 
 def of_no_name(problem: Problem, found: Fit, taken: Taken | None, count: int) -> tuple[Problem, Fit] | None:
@@ -51,16 +66,18 @@ def of_its_own_form(problem: Problem, found: Fit, taken: Taken, count: int) -> t
 
 
 def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
-    """A likelier set without one of the names that it adds, where the curve of another of its laws is likelier.
+    """A likelier set without one or all names that it adds, where the curve of another of its laws is likelier.
 
     The law and its curve must leave what counts as noise (`LEVEL`): where more is left, more than a form is missing.
     """
     effects, added = taken.fit.effects, len(taken.names)
     problem = with_curves_of(taken.problem, effects)
     best, chosen = 0.0, None
-    for place in range(len(effects) - added, len(effects)):
-        rest = [effect for i, effect in enumerate(effects) if i != place]
-        if has_curve(rest) and not has_play(effects[place : place + 1]):
+    first = len(effects) - added
+    singly = [[place] for place in range(first, len(effects))]
+    for gone in singly if added == 1 else [*singly, list(range(first, len(effects)))]:
+        rest = [effect for i, effect in enumerate(effects) if i not in gone]
+        if has_curve(rest) and not has_play([effects[i] for i in gone]):
             without = fit(problem, rest, iterations=JOINT_ITERATIONS)
             odds, opened = likeliest_curve(problem, without, count)
             odds -= log_odds(problem, without, taken.fit, count)
@@ -83,10 +100,31 @@ def curve_of_value(
     if odds <= max(odds_between(Standing(problem, found), Standing(*beyond[:2]), count), 0.0):
         return None
     there = fit(opened, found.effects, iterations=JOINT_ITERATIONS)
-    return refitted(opened, there) if _level(opened, there) * LEVEL**2 < 1 else None
+    return with_its_curves(opened, there) if _level(opened, there) * LEVEL**2 < 1 else None
+
+
+def with_its_curves(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """A set fitted beside the curves of its laws, anew where a law is of another size than when its curve was taken.
+
+    A curve is as large as its law at most. Fitted alone a law of another form may be a third of what it is beside its
+    curve, and values that stood in for the rest stay where they stood.
+    """
+    for _ in range(TURNS):
+        before = read_coordinates(found.effects, problem.plant)
+        problem, found = refitted(problem, found)
+        there = read_coordinates(found.effects, problem.plant)
+        if not open_curves(problem) or len(there) != len(before):
+            break
+        if np.all(np.abs(there - before) <= ALIKE * np.maximum(np.abs(before), np.abs(there))):
+            break
+        problem = with_curves_anew(problem, found.effects)
+        found = fit(problem, found.effects, iterations=JOINT_ITERATIONS)
+    return problem, found
 
 
 def _level(problem: Problem, found: Fit) -> float:
-    """Weighted squared error per row, of the channel that is met worst by its noise."""
-    left = max((value for e in problem.evidence for value in e.left.values()), default=1.0)
-    return left**2 * found.squared_error / max(len(found.residual), 1)
+    """Squared error per row, every channel over its noise, whatever else the channels are weighed by."""
+    total = 0.0
+    for e, channels in zip(problem.evidence, problem.by_channel(found.residual), strict=True):
+        total += sum(e.left.get(name, 1.0) ** 2 * float(rows @ rows) for name, rows in channels.items())
+    return total / max(len(found.residual), 1)

@@ -52,6 +52,19 @@ def likeliest_curve(problem: Problem, found: Fit, count: int) -> tuple[float, Pr
     return best, chosen
 
 
+def with_curves_anew(problem: Problem, effects: Sequence[Effect]) -> Problem:
+    """The problem with its open curves as large as their laws are now: as what the law does, so far may its form go."""
+    evidence = list(problem.evidence)
+    for place, effect in enumerate(effects):
+        if any(effect.name in e.curves for e in evidence):
+            parts = law_curves(problem, effects, place)
+            evidence = [
+                e.with_curves({**e.curves, effect.name: parts[its]}) if its in parts else e
+                for e, its in zip(evidence, problem.evidence, strict=True)
+            ]
+    return replace(problem, evidence=tuple(evidence))
+
+
 def log_odds_of_curves(problem: Problem, found: Fit, count: int, curved: Problem) -> float:
     """Logarithm of the odds for the curves that are open in a problem and closed in another.
 

@@ -17,7 +17,7 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt
-from feeddrive.diagnosis.finding.curve_in_place import curve_of_value, of_no_name
+from feeddrive.diagnosis.finding.curve_in_place import curve_of_value, of_no_name, with_its_curves
 from feeddrive.diagnosis.finding.elsewhere import at_likelier_place
 from feeddrive.diagnosis.finding.likelier import Near, Taken, likelier, of_likelier_law, with_play
 from feeddrive.diagnosis.finding.materiality import is_material_here
@@ -72,6 +72,7 @@ class Search:
         near: effects that may come beside those found, the likeliest first.
         begun: problem and fit that the search began with; None for one that is made of a fit.
         tried: most candidates and starts that a round tried; 0 where there was none.
+        opened: problem and fit with the curves of its laws open; None where none is.
         asked: what was asked of the judged recordings beside it and beside sets made of it (`recordings.compared`).
     """
 
@@ -83,6 +84,7 @@ class Search:
     near: tuple[Near, ...] = ()
     begun: tuple[Problem, Fit] | None = None
     tried: int = 0
+    opened: tuple[Problem, Fit] | None = None
     asked: list[Any] = field(default_factory=list, compare=False)
 
     @property
@@ -134,7 +136,7 @@ def search(
         form = None if unnamed is None else (members_of(unnamed[1].effects), open_curves(unnamed[0]))
         if unnamed is not None and form not in forms:
             forms.add(form)
-            problem, found = refitted(*unnamed)
+            problem, found = with_its_curves(*unnamed)
             continue
         after = _refitted_with(asked, found)
         begin = begun_as_declared(problem, found)
@@ -192,10 +194,10 @@ def search(
             trials.append(Trial(number, found.effects[-1].name, by.gain, by.standard_error, True))
         elif not others:
             break
-    problem, found, small = _ended(problem, found)
+    opened, problem, found, small = _ended(problem, found)
     impossible |= dict.fromkeys((one.name for one in small), SMALL)
     found = with_usual_sizes(problem, found)
-    return Search(problem, found, tuple(trials), tuple(rounds), impossible, near, begun, tried)
+    return Search(problem, found, tuple(trials), tuple(rounds), impossible, near, begun, tried, opened)
 
 
 def _asked(
@@ -236,8 +238,10 @@ def _refitted_with(asked: _Asked, found: Fit) -> tuple[Problem, Fit] | None:
     return as_payload(*there, asked.now.count)
 
 
-def _ended(problem: Problem, found: Fit) -> tuple[Problem, Fit, list[Effect]]:
+def _ended(problem: Problem, found: Fit) -> tuple[tuple[Problem, Fit] | None, Problem, Fit, list[Effect]]:
     """The set that is left at the end, all that is left counting again; and effects too small to be reported.
+
+    Before it the set beside the curves of its laws, where any is open.
 
     One that is small on this machine is reported where the error of a channel shows it: a fine scale sees a part that
     shakes which is a ten-thousandth of the table.
@@ -245,6 +249,7 @@ def _ended(problem: Problem, found: Fit) -> tuple[Problem, Fit, list[Effect]]:
     there = in_steps_told(*refitted(problem, fit(problem, found.effects)))
     problem, found = where_friction_brakes(*at_rest(*there))
     closed = with_curves_of(problem, ())  # names are weighed, and rivals tried, against all that is left
+    opened = None if closed is problem else (problem, found)
     if closed is not problem:
         problem, found = closed, fit(closed, found.effects, iterations=JOINT_ITERATIONS)
     small = [one for one in found.effects if not is_material_here(one, problem)]
@@ -253,8 +258,8 @@ def _ended(problem: Problem, found: Fit) -> tuple[Problem, Fit, list[Effect]]:
         fewer = without_effects(problem, small, rest)
         without = fit(fewer, rest)
         if not _is_seen(Standing(fewer, without), Standing(problem, found)):
-            return fewer, without, small
-    return problem, found, []
+            return None, fewer, without, small
+    return opened, problem, found, []
 
 
 def _is_seen(without: Standing, found: Standing) -> bool:

@@ -35,6 +35,7 @@ from scipy.special import chdtri
 from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
 from feeddrive.diagnosis.calibration.stated import is_within_tolerance, without_effects
 from feeddrive.diagnosis.certainty.one_sided import one_sided
+from feeddrive.diagnosis.certainty.profile import size_beside_shape
 from feeddrive.diagnosis.certainty.uncertainty import Certainty, certainty
 from feeddrive.diagnosis.finding.attempt import with_short_blocks
 from feeddrive.diagnosis.finding.search import Search
@@ -289,9 +290,10 @@ def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
     """Per effect, a sentence where the 95 % intervals of all its sizes hold the absent effect; else empty.
 
     Of components and nodes that belong together the whole is asked: their squares over their variances, against the
-    same quantile. Beside none of it the place of a tight place or the order of a ripple mean nothing, and whether it
-    is there is asked with them as they are; which of them it is the likelihood of the set has paid for: Davies,
-    Biometrika 64 (1977) 247. Of a size whose slope tells nothing the likelihood is asked (`one_sided`).
+    same quantile. Beside none of it the place of a tight place means nothing, and whether it is there is asked with
+    its shape as it is; which shape the likelihood of the set has paid for: Davies, Biometrika 64 (1977) 247. Its
+    interval is then that of the likelihood (`profile`). Of a size whose slope tells nothing that is asked at once
+    (`one_sided`).
     """
     if not fitted.effects:
         return []
@@ -306,7 +308,7 @@ def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
         nodes = [np.flatnonzero(groups == group) for group in sizes]
         shapes = [int(i) for i in places if math.isnan(absent[i])]
         sure = any(_is_not_none(known, beyond, group) for group in nodes) or not sizes or is_shift(effect)
-        if not sure and shapes:
+        if not sure and size_beside_shape(problem, fitted, place) is not None:
             there = certainty(problem, fitted, shapes)
             sure = any(_is_not_none(there, beyond, group) for group in nodes)
         denied = not sure and one_sided(problem, fitted, place) is None

@@ -8,7 +8,7 @@ Declared values within their tolerances are whitened away, and stepped to where 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -52,6 +52,7 @@ class Problem:
         predictor: of their kind.
         calibration: of the declared values; None where all are taken as exact.
         numbers: measured beside the recordings; their rows stand behind those of all recordings.
+        tables: name of a law to the tables that the plant carries beside it, for another form than ours.
         budget: of time.
     """
 
@@ -60,11 +61,17 @@ class Problem:
     predictor: Predictor[Any]
     calibration: Calibration | None = None
     numbers: MeasuredRows = field(default_factory=MeasuredRows)
+    tables: Mapping[str, tuple[Effect, ...]] = field(default_factory=dict)
     budget: Budget = field(default_factory=Budget, compare=False)
 
     def machine(self, effects: Sequence[Effect] = ()) -> Plant:
-        """The plant with its declared values as calibrated, and further effects."""
-        return self._calibrated.with_effects(*effects)
+        """The plant with its declared values as calibrated, and further effects, laws with their tables."""
+        return self._calibrated.with_effects(*effects, *self.tables_of(effects))
+
+    def tables_of(self, effects: Sequence[Effect]) -> tuple[Effect, ...]:
+        """The tables that the plant carries beside some effects."""
+        names = {effect.name for effect in effects}
+        return tuple(table for name, tables in self.tables.items() if name in names for table in tables)
 
     @cached_property
     def _calibrated(self) -> Plant:

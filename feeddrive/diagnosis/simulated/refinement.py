@@ -144,7 +144,8 @@ def refined(found: Search, outcome: Outcome, judge: Judge) -> Refinement:
 
 
 def _problem(found: Search) -> LoopProblem:
-    plant = found.problem.settled(found.fit.effects).machine()
+    settled = found.problem.settled(found.fit.effects)
+    plant = settled.machine().with_effects(*settled.tables_of(found.fit.effects))
     loops = [loop_evidence(plant, evidence) for evidence in found.problem.evidence]
     fitted = [loop for loop in loops if loop.fit_rows.any()]
     if not fitted:

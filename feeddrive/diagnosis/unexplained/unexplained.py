@@ -28,7 +28,7 @@ from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Instead,
 from feeddrive.diagnosis.unexplained.view import above_noise, views_of
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
-from feeddrive.effects.tabulated import Tabulated
+from feeddrive.effects.tabulated import Tabulated, TabulatedTravel
 
 EVENT = 0.1
 """Share of the squared residual from which something that happened once is reported, though the judged data lack it."""
@@ -38,12 +38,15 @@ FEWEST = 2
 
 CURVES = {
     ("tabulated_force", "position"): ("position_spring",),
-    ("tabulated_force", "velocity"): ("stribeck", "viscous_asymmetry"),
+    ("tabulated_force", "velocity"): ("stribeck", "viscous_asymmetry", "coulomb_asymmetry"),
     ("tabulated_friction", "position"): ("friction_vs_position",),
     ("tabulated_friction", "periodic_position"): ("ball_pass_ripple",),
+    ("tabulated_friction", "time"): ("viscous_warmup",),
     ("tabulated_torque", "periodic_angle"): ("torque_ripple",),
+    ("tabulated_torque", "speed"): ("stribeck", "viscous_asymmetry", "coulomb_asymmetry"),
     ("tabulated_travel", "position"): ("lead_error_cumulative",),
     ("tabulated_travel", "periodic_position"): ("lead_error_periodic",),
+    ("tabulated_travel", "time"): ("thermal_growth",),
 }
 """Tables by what they give and over what, and the laws that are such a curve."""
 
@@ -67,8 +70,9 @@ class Rest:
 
 
 def explain_rest(
-    problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], channels: Sequence[ChannelResult]
-) -> Rest:
+    problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], channels: Sequence[ChannelResult],
+    tables: Sequence[Effect] = (),
+) -> Rest:  # fmt: skip
     """Say what is left of every channel, and carry what pays.
 
     Args:
@@ -76,12 +80,13 @@ def explain_rest(
         effects: named ones that were found.
         judged: recordings that were not fitted.
         channels: errors with the named effects.
+        tables: carried in any case, of another form of a law.
     """
-    names_alone = problem, judged
+    names_alone = problem, with_carried(judged, *tables)
     problem = replace(problem, evidence=tuple(e.with_map(False) for e in problem.evidence))
     judged = [replace(j, evidence=j.evidence.with_map(False)) for j in judged]
     first = analyses_of(problem, effects, judged, channels)
-    carried: list[Carried] = []
+    carried = _begun(problem, judged, tables)
     reasons: dict[str, list[str]] = {channel.name: [] for channel in channels}
     for channel in _torque_first(channels):
         analysis = first[channel.name]
@@ -108,6 +113,17 @@ def explain_rest(
         left[c.name] = _unexplained(c, first[c.name], carried, reasons[c.name], instead)
     own = [one.effect for one in carried]
     return Rest(left, tuple(own), tuple(with_carried(judged, *own)))
+
+
+def _begun(problem: Problem, judged: Sequence[Judged], tables: Sequence[Effect]) -> list[Carried]:
+    """Tables that are carried in any case, one beside the other."""
+    carried: list[Carried] = []
+    for table in tables:
+        if isinstance(table, Tabulated):
+            channel = "table_position" if isinstance(table, TabulatedTravel) else "motor_torque"
+            beside = with_carried(judged, *(one.effect for one in carried))
+            carried.append(judged_with(problem, beside, table, channel))
+    return carried
 
 
 def _torque_first(channels: Sequence[ChannelResult]) -> list[ChannelResult]:
