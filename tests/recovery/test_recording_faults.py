@@ -6,12 +6,14 @@ import math
 import re
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.diagnosis.preparation import prepared
-from feeddrive.diagnosis.suspicion.recording_faults import refuse_faulty
+from feeddrive.diagnosis.suspicion.recording_faults import FAR_LESS, clocks, refuse_faulty, torque_parts
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import find_effect
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation
@@ -19,9 +21,11 @@ from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.errors import InputError
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from tests.recovery.planted import axis_plant, pair
+from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
 
 AXES = ("bench", "light")
 
@@ -124,3 +128,30 @@ def test_machine_other_than_declared_is_not_refused(name: str) -> None:
 @pytest.mark.parametrize("factor", [0.9, 1.1])
 def test_torque_constant_within_its_tolerance_is_not_refused(factor: float) -> None:
     refuse(axis_plant("bench"), times(null("bench"), factor))
+
+
+def friction_alone(clock: float, folder: Path) -> tuple[Plant, Recording]:
+    """A rigid axis that hardly accelerates, in noise: a quarter of its inertia says nearly what another clock says."""
+    path = folder / "rigid.toml"
+    path.write_text(PLANT, encoding="utf-8")
+    recording = rigid_run("slow", Truth(), 20.0, 3.0)
+    noise = 4e-3 * np.random.default_rng(7).standard_normal(len(recording.time))
+    louder = recording.with_channels({"motor_torque": recording["motor_torque"] + noise})
+    return read_plant(path), slower(louder, clock)
+
+
+def test_a_clock_that_an_inertia_nearly_says_is_refused_by_its_odds(tmp_path: Path) -> None:
+    plant, recording = friction_alone(0.5, tmp_path)
+    problem, _, _ = prepared(plant, [recording], [], 1.0)
+    (evidence,) = problem.evidence
+    assert isinstance(evidence, AxisEvidence)
+    seen = torque_parts(problem, plant, evidence)
+    assert seen is not None
+    half = min(clocks(problem, plant, evidence), key=lambda fault: fault.left)
+    assert FAR_LESS < half.left / seen.one_cause < half.least  # not by a quarter, but by its odds
+    with pytest.raises(InputError, match=r"0\.002 s"):
+        refuse(plant, recording)
+
+
+def test_a_true_clock_is_not_refused_though_friction_is_nearly_all(tmp_path: Path) -> None:
+    refuse(*friction_alone(1.0, tmp_path))

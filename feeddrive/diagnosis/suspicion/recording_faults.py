@@ -16,6 +16,9 @@ The recording is refused where a fault leaves a quarter of what any single cause
 does: of all masses and levels, none explains better than one number that is the same for all of them. A payload moves f
 alone, other friction h alone; a torque constant a few percent off stays inside TOLERANCE and is not refused. A motion
 that takes no torque to accelerate, or has no friction, tells no factor from a mass or a friction, and is not refused.
+A clock of double or half the rate has no number that could be fitted: of N blocks it is likelier by N/2 ln(left of one
+cause over its own), and that must outweigh how rare it is (RARE). Inertias that are a quarter of those declared look
+nearly the same where friction turns with the direction alone.
 
 A torque that follows the motion of no machine is refused as well, where the motion asks for a torque that varies by
 more than its mean. In a stroke at one speed it asks for less: there what friction varies by along the way may be all.
@@ -46,6 +49,9 @@ each for the torque constant (the usual tolerance of motor data) and for inertia
 FAR_LESS = 0.25
 """Share of the mean square that one cause leaves, below which a fault explains far more: half of its rms."""
 
+RARE = 1e-3
+"""Share of recordings whose clock runs at double or half the rate: one in a thousand."""
+
 AS_GOOD = 1.1
 """Mean square over that of any machine within which a fault does as well; f and h of noise alone lower it by less."""
 
@@ -63,11 +69,13 @@ class Fault:
     Attributes:
         left: mean square of the torque that is left with it, over that of the torque.
         what, mend: for the person whose recording it is.
+        least: share of what one cause leaves, below which it is the fault.
     """
 
     left: float
     what: str
     mend: str
+    least: float = FAR_LESS
 
 
 def refuse_faulty(problem: Problem, recordings: Sequence[Evidence]) -> None:
@@ -92,7 +100,7 @@ def _refuse(problem: Problem, plant: Plant, evidence: AxisEvidence) -> None:
     any_machine, where = seen.any_machine, evidence.recording.name
     best = min((sign_or_factor(seen), magnitude(seen), *clocks(problem, plant, evidence)), key=lambda fault: fault.left)
     follows = best.left < 1 - LEAST_LIKENESS**2
-    if follows and best.left < FAR_LESS * seen.one_cause and best.left < AS_GOOD * any_machine:
+    if follows and best.left < best.least * seen.one_cause and best.left < AS_GOOD * any_machine:
         if best.what:
             shares = (f"{100 * math.sqrt(left):.3g} %" for left in (best.left, seen.as_declared))
             explained = "{} of its rms are left unexplained then, {} as it is".format(*shares)
@@ -215,7 +223,8 @@ def magnitude(seen: TorqueParts) -> Fault:
 
 def clocks(problem: Problem, plant: Plant, evidence: AxisEvidence) -> list[Fault]:
     """The recording with its time stamps corrected."""
-    faults = []
+    faults, blocks = [], evidence.counted.sum() * evidence.recording.sample_time / evidence.block
+    least = max(FAR_LESS, float(RARE ** (2 / max(blocks, 1.0))))
     for clock in CLOCKS:
         recording = evidence.recording
         step = recording.sample_time / clock
@@ -229,5 +238,5 @@ def clocks(problem: Problem, plant: Plant, evidence: AxisEvidence) -> list[Fault
             g = seen.factor if evidence.scaled_from else 1.0
             what = f"the time stamps are {clock:g} times what the motion of this machine needs"
             mend = f"check unit and rate of the time column: a row every {step:.4g} s fits"
-            faults.append(Fault(seen.left(g * seen.predicted), what, mend))
+            faults.append(Fault(seen.left(g * seen.predicted), what, mend, least))
     return faults
