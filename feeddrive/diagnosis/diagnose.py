@@ -161,7 +161,7 @@ def _reported(
     compared, known = compared_recordings(searched, judged), certainty(found.problem, found.fit)
     there, with_changes, allowed = compared.allowing(found, judged)  # what is stated to differ is not left
     bare, plain = without_tables(there, with_changes, allowed)
-    tables = found.problem.tables_of(found.fit.effects)
+    tables = {name: own for name, own in found.problem.tables.items() if name in {e.name for e in found.fit.effects}}
     rest = explain_rest(bare, with_changes, plain, channel_results(bare, plain), tables)
     after = with_carried(without_tables(found.problem, found.fit.effects, judged)[1], *rest.effects)
     unexplained = rest.unexplained if allowed is judged else beside_changes(rest.unexplained)

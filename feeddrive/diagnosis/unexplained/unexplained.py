@@ -11,7 +11,7 @@ form that the law misses.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from feeddrive.diagnosis.finding.search import Search
@@ -71,7 +71,7 @@ class Rest:
 
 def explain_rest(
     problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], channels: Sequence[ChannelResult],
-    tables: Sequence[Effect] = (),
+    tables: Mapping[str, Sequence[Effect]] | None = None,
 ) -> Rest:  # fmt: skip
     """Say what is left of every channel, and carry what pays.
 
@@ -80,13 +80,14 @@ def explain_rest(
         effects: named ones that were found.
         judged: recordings that were not fitted.
         channels: errors with the named effects.
-        tables: carried in any case, of another form of a law.
+        tables: name of a law of another form to its curve, which is carried in any case.
     """
-    names_alone = problem, with_carried(judged, *tables)
+    begun = _begun(problem, judged, tables or {})
+    names_alone = problem, with_carried(judged, *(one.effect for one in begun))
     problem = replace(problem, evidence=tuple(e.with_map(False) for e in problem.evidence))
     judged = [replace(j, evidence=j.evidence.with_map(False)) for j in judged]
     first = analyses_of(problem, effects, judged, channels)
-    carried = _begun(problem, judged, tables)
+    carried = begun
     reasons: dict[str, list[str]] = {channel.name: [] for channel in channels}
     for channel in _torque_first(channels):
         analysis = first[channel.name]
@@ -115,14 +116,14 @@ def explain_rest(
     return Rest(left, tuple(own), tuple(with_carried(judged, *own)))
 
 
-def _begun(problem: Problem, judged: Sequence[Judged], tables: Sequence[Effect]) -> list[Carried]:
-    """Tables that are carried in any case, one beside the other."""
+def _begun(problem: Problem, judged: Sequence[Judged], tables: Mapping[str, Sequence[Effect]]) -> list[Carried]:
+    """Curves of laws, one beside the other."""
     carried: list[Carried] = []
-    for table in tables:
+    for law, table in [(law, table) for law, own in tables.items() for table in own]:
         if isinstance(table, Tabulated):
             channel = "table_position" if isinstance(table, TabulatedTravel) else "motor_torque"
             beside = with_carried(judged, *(one.effect for one in carried))
-            carried.append(judged_with(problem, beside, table, channel))
+            carried.append(replace(judged_with(problem, beside, table, channel), curve_of=law))
     return carried
 
 
@@ -138,7 +139,8 @@ def _together(
     result = []
     for place, one in enumerate(carried):
         others = [*tables[:place], *tables[place + 1 :]]
-        result.append(judged_with(problem, with_carried(judged, *others), tables[place], one.channel))
+        there = judged_with(problem, with_carried(judged, *others), tables[place], one.channel)
+        result.append(replace(there, curve_of=one.curve_of))
     return result if all(one.pays for one in result) else carried
 
 

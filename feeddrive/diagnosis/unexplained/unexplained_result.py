@@ -141,6 +141,7 @@ class Carried:
         before: channel to the rms without it, SI.
         after: channel to the rms with it, SI.
         pays: whether it lowers the error by as much as is asked of a named effect, and harms no channel.
+        curve_of: name of the law that has another form than ours, whose curve it is; empty for a term of no name.
     """
 
     channel: str
@@ -149,6 +150,7 @@ class Carried:
     before: dict[str, float]
     after: dict[str, float]
     pays: bool
+    curve_of: str = ""
 
     @property
     def name(self) -> str:
@@ -172,13 +174,19 @@ class Carried:
         """What it explains, beside it in the plant file."""
         shares = ", ".join(f"{percent(share, 1)} of {name}" for name, share in self.explains.items() if share > 0.001)
         word = self.variable.replace("periodic_", "the period of the ").replace("_", " ")
-        return f"Of no known name: what was left, as a table over {word}. Explains {shares} on data not fitted."
+        what = (
+            f"What {self.curve_of} leaves, whose form is another"
+            if self.curve_of
+            else "Of no known name: what was left"
+        )
+        return f"{what}, as a table over {word}. Explains {shares} on data not fitted."
 
     def record(self) -> dict[str, Any]:
         """Its keys in `diagnosis.json`."""
         return {
             "name": self.name, "port": str(self.effect.port), "variable": self.variable, **self.table.record(),
             "explains": self.explains, "rms_without": self.before, "rms_with": self.after,
+            **({"curve_of": self.curve_of} if self.curve_of else {}),
         }  # fmt: skip
 
 

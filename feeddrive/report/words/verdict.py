@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis
+from feeddrive.diagnosis.unexplained.unexplained_result import Carried
 from feeddrive.report.words.explained_words import odds_text
 from feeddrive.report.words.number_text import error_text, share_text, significant
 from feeddrive.report.words.parameters import effect_sentence
@@ -19,9 +20,15 @@ def verdict_sentences(diagnosis: Diagnosis) -> list[str]:
     """The verdict in plain text, the main finding first."""
     tables = _tables(diagnosis) if diagnosis.effects else ""
     beside = f"Beside these it carries what no named effect explains: {tables}." if tables else ""
+    curves = [
+        f"{effect_words(one.curve_of)}: {effect_words(one.name)} over {plain(one.variable)}"
+        for one in _carried(diagnosis)
+        if one.curve_of
+    ]
+    another = f"Of another form than the catalogue's, with its curve carried: {'; '.join(curves)}." if curves else ""
     stated = [one.statement for one in diagnosis.changes.changes]
     changed = f"Between the recordings changed: {'; '.join(stated)}." if stated else ""
-    found = [_main_finding(diagnosis), diagnosis.untried, beside, changed]
+    found = [_main_finding(diagnosis), diagnosis.untried, another, beside, changed]
     sentences = [*found, _errors(diagnosis), *_above_noise(diagnosis)]
     return [sentence for sentence in sentences + _beyond(diagnosis) + _doubts(diagnosis) if sentence]
 
@@ -58,8 +65,13 @@ def _main_finding(diagnosis: Diagnosis) -> str:
 
 def _tables(diagnosis: Diagnosis) -> str:
     """What the plant carries as tables because no named effect explains it."""
-    carried = [one for left in diagnosis.unexplained.values() for one in left.carried]
+    carried = [one for one in _carried(diagnosis) if not one.curve_of]
     return "; ".join(f"{effect_words(one.name)} over {plain(one.variable)}" for one in carried)
+
+
+def _carried(diagnosis: Diagnosis) -> list[Carried]:
+    """Every table that the plant carries."""
+    return [one for left in diagnosis.unexplained.values() for one in left.carried]
 
 
 def _errors(diagnosis: Diagnosis) -> str:
