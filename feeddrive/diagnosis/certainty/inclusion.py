@@ -5,7 +5,7 @@
 with the evidence E of `likelihood.set_evidence`, each set beside the declared values that suit it best: a set without a
 name has values of its own, which take over some of what the name explained. What the data say for a further effect
 grows with the time that is recorded, what it costs does not: so a recording of the same kind that settles it is so many
-times as long.
+times as long. What speaks for the curve of a law speaks for the law: without the law there is none.
 """
 
 from __future__ import annotations
@@ -19,13 +19,15 @@ from scipy.special import logsumexp
 
 from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival
+from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.likelier import Near
+from feeddrive.diagnosis.finding.members import members_of
+from feeddrive.diagnosis.finding.open_map import log_odds_of_curves, open_curves, with_curves_of
 from feeddrive.diagnosis.finding.refitting import at_rest
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import SURE, members_weighed
 from feeddrive.diagnosis.judging.result import PossibleEffect
-from feeddrive.diagnosis.likelihood.fit import Fit, fit
-from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
 from feeddrive.diagnosis.recordings.recordings import is_shift, without_shifts
 
@@ -43,7 +45,7 @@ def odds_for(found: Search, rivals: Sequence[Sequence[Rival]]) -> tuple[float, .
         found: what the search took.
         rivals: per effect, those that do as well in its place.
     """
-    members = _members_at_rest(found.problem, found.fit, found.count)[: len(without_shifts(found.fit.effects))]
+    members = _members_at_rest(found)[: len(without_shifts(found.fit.effects))]
     result = []
     for one, alike in zip(members, rivals, strict=False):
         against = float(logsumexp([one.gain, *(-0.5 * rival.odds for rival in alike)]))
@@ -64,7 +66,7 @@ def asserted(found: Search) -> Search:
     if any(is_shift(effect) for effect in found.fit.effects):
         return found  # what one recording has otherwise belongs to the effect taken
     while found.fit.effects:
-        members = _members_at_rest(found.problem, found.fit, found.count)
+        members = _members_at_rest(found)
         place = max(range(len(members)), key=lambda i: members[i].gain)
         one = members[place]
         if one.gain <= -OPEN or one.without is None:
@@ -89,15 +91,16 @@ class _Member:
     without: Standing | None
 
 
-def _members_at_rest(problem: Problem, found: Fit, count: int) -> tuple[_Member, ...]:
+def _members_at_rest(search: Search) -> tuple[_Member, ...]:
     """Per member of a set, the set without it; both with their declared values at rest where it is not sure.
 
     Slopes say of the values what holds near the set at hand: that is enough of a member that is sure (`SURE`).
     """
+    problem, found, count = search.problem, search.fit, search.count
     members = members_weighed(problem, found, count)
     if all(one.gain <= -SURE for one in members):
         return tuple(_Member(one.gain, one.speaks, None) for one in members)
-    stands = Standing(*at_rest(problem, found))
+    stands, curves = Standing(*at_rest(problem, found)), _odds_of_curves(search)
     result = []
     for place, one in enumerate(members):
         if one.gain <= -SURE:
@@ -106,9 +109,23 @@ def _members_at_rest(problem: Problem, found: Fit, count: int) -> tuple[_Member,
         rest = [effect for i, effect in enumerate(found.effects) if i != place]
         there = without_effects(problem, [found.effects[place]], rest)
         without = Standing(*at_rest(there, fit(there, rest)))
-        gain = odds_between(stands, without, count)
+        gain = odds_between(stands, without, count) - curves.get(found.effects[place].name, 0.0)
         result.append(_Member(gain, min(gain - one.gain + one.speaks, 0.0), without))
     return tuple(result)
+
+
+def _odds_of_curves(found: Search) -> dict[str, float]:
+    """Law of another form to the logarithm of the odds for its curve, where the plant does not carry it beside it."""
+    if found.opened is None or members_of(found.opened[1].effects) != members_of(found.fit.effects):
+        return {}
+    problem, fitted = found.opened
+    result = {}
+    for name in open_curves(problem):
+        if name not in found.problem.tables:
+            closed = with_curves_of(problem, [effect for effect in fitted.effects if effect.name != name])
+            alone = fit(closed, fitted.effects, iterations=JOINT_ITERATIONS)
+            result[name] = max(log_odds_of_curves(closed, alone, found.count, problem), 0.0)
+    return result
 
 
 def possible_effects(found: Search, rivals: Sequence[Sequence[Rival]]) -> tuple[PossibleEffect, ...]:

@@ -149,7 +149,11 @@ def _first_denied(found: Search, judged: Sequence[Judged], spared: Collection[st
     if other is not None and other.carries:
         # a recording in which the effect itself is another says nothing against it
         stands = [carries or moved for carries, moved in zip(other.carries, other.other, strict=True)]
-        idle = ["" if stood else reason for reason, stood in zip(idle, stands, strict=True)]
+        said = {change.effect: f"; {change.statement}" for change in reversed(other.stated)}
+        idle = [
+            "" if stood or not reason else f"{reason}{said.get(effects[i].name, '')}"
+            for i, (reason, stood) in enumerate(zip(idle, stands, strict=True))
+        ]
         worst = _worst_channel(other.problem, other.allowed)
     at_end, around_none = ends_reached(problem, found.fit), sizes_around_none(problem, found.fit)
     as_declared = values_within_tolerance(problem, found.fit)

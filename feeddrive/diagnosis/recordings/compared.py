@@ -16,7 +16,14 @@ import numpy as np
 from feeddrive.diagnosis.calibration.calibrate import with_recordings
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.search import Search
-from feeddrive.diagnosis.judging.judge import Judged, error_series, judged_channels, prepared_for_judging, share_of
+from feeddrive.diagnosis.judging.judge import (
+    Judged,
+    error_series,
+    judged_channels,
+    prepared_for_judging,
+    share_beyond,
+    share_of,
+)
 from feeddrive.diagnosis.judging.result import EffectResult
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import declining
@@ -150,7 +157,7 @@ class JudgedChanges:
         changes: as fitted, with what was tried.
         stated: the clear ones.
         carries: whether each effect of the machine carries with them allowed for; empty where nothing differs.
-        other: whether a value of each effect differs itself.
+        other: whether a value of each effect differs itself, and with that value it carries: it is there, as another.
         explains: channel to the share of the squared error after that the differences are.
         problem: whose predictor knows the differences.
         allowed: the judged recordings with the differences in the plant after.
@@ -209,7 +216,8 @@ def _judged_changes(found: Search, judged: Sequence[Judged], apart: Sequence[Jud
     count = len(without_shifts(found.fit.effects))
     numbers = [question.here for question in questions]
     carries = tuple(_carries(carrying, judged, changes.fit.effects, i, numbers) for i in range(count))
-    other = tuple(any(t.meets(e) for t in changes.targets) for e in found.fit.effects[:count])
+    differs = [any(t.meets(e) for t in changes.targets) for e in found.fit.effects[:count]]
+    other = tuple(one and _is_there(carrying, allowed, changes.fit.effects, i) for i, one in enumerate(differs))
     return JudgedChanges(
         changes, stated, carries, other, _explained(carrying, judged, allowed), carrying, tuple(allowed)
     )
@@ -228,6 +236,18 @@ def _carries(
     plant = problem.machine(own)
     there = [prepared_for_judging(problem, j.evidence.whole, j.before, plant) for j in judged]
     return bool(share_of(problem, there, own, index).carries)
+
+
+def _is_there(problem: Problem, allowed: Sequence[Judged], effects: Sequence[Effect], index: int) -> bool:
+    """Whether an effect shows and carries with the values that it has in the judged recordings; else it is gone."""
+    mine = effects[index]
+    without = [
+        effect
+        for i, effect in enumerate(effects)
+        if i != index and not (isinstance(effect, RecordingShift) and effect.target.meets(mine))
+    ]
+    share = share_beyond(problem, allowed, without)
+    return share.shows and share.carries
 
 
 def _explained(problem: Problem, judged: Sequence[Judged], allowed: Sequence[Judged]) -> dict[str, float]:
