@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.certainty.inclusion import _odds_of_curves
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.curve_in_place import with_its_curves
 from feeddrive.diagnosis.finding.open_map import likeliest_curve, open_curves
+from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import prepared_for_judging
 from feeddrive.diagnosis.judging.law_tables import without_tables
 from feeddrive.diagnosis.likelihood.fit import fit
@@ -79,3 +83,19 @@ def test_a_law_that_goes_takes_its_table_along(runs: tuple) -> None:  # type: ig
     bare, plain = without_tables(problem, [law], judged)
     assert not bare.tables and table not in plain[0].after.effects
     assert without_tables(bare, [law], plain) == (bare, plain)
+
+
+def test_what_speaks_for_a_curve_speaks_for_its_law(runs: tuple) -> None:  # type: ignore[type-arg]
+    """A law that is hardly told from none without its curve is told with it; a table that is carried has done so."""
+    plant = axis_plant("bench")
+    problem = Problem(plant, (prepare(runs[0], plant, 1.0),), AxisPredictor())
+    alone = fit(problem, [Stribeck.of(delta_force=-3.0, velocity=0.04)], iterations=0)
+    _, opened = likeliest_curve(problem, alone, 40)
+    there, found = with_its_curves(opened, alone)
+    search = Search(problem, alone, (), (), {}, opened=(there, found))
+    (odds,) = _odds_of_curves(search).values()
+    assert odds > 100  # the curve of a Stribeck drop of 45 N
+    table = TabulatedForce.of(Port.TABLE, "velocity", velocity=(0.0,), force=(1.0,))
+    carried = replace(problem, tables={"stribeck": (table,)})
+    assert _odds_of_curves(replace(search, problem=carried)) == {}
+    assert _odds_of_curves(replace(search, fit=fit(problem, ()))) == {}  # the law has gone, and its curve with it
