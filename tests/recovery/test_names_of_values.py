@@ -13,6 +13,7 @@ from feeddrive.diagnosis.calibration.stated import said_by_effects
 from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes
 from feeddrive.diagnosis.certainty.inclusion import OPEN, _members_at_rest
 from feeddrive.diagnosis.finding.refitting import with_value_back, with_value_from_declared
+from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import members_weighed
 from feeddrive.diagnosis.judging.veto import values_within_tolerance
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
@@ -74,7 +75,10 @@ def test_odds_of_a_name_do_not_depend_on_where_the_declared_values_stood() -> No
     found, moved = fit(near, [drop]), fit(far, [drop])
     (by_slopes,) = members_weighed(far, moved, 30)
     assert by_slopes.gain < -OPEN
-    (there,), (here,) = _members_at_rest(far, moved, 30), _members_at_rest(near, found, 30)
+    (there,), (here,) = (
+        _members_at_rest(Search(problem, fitted, (), (), {}, tried=30))
+        for problem, fitted in ((far, moved), (near, found))
+    )
     # nothing was planted; rest is where a step takes less than half a nat
     assert there.gain > OPEN and there.gain == pytest.approx(here.gain, abs=0.5)
 

@@ -26,6 +26,6 @@ def test_a_part_that_shakes_is_reported_where_sensors_are_fine_enough(finer: flo
     mass = 0.5 * LEAST_MASS_SHARE * plant.chain.values["table_mass"]
     mode = StructuralMode.of(mass=mass, frequency=57.0, damping=0.012)
     problem = Problem(plant, (drawn(plant, fine, [mode], 1),), AxisPredictor())
-    _, found, small = _ended(problem, fit(problem, [mode]))
+    _, _, found, small = _ended(problem, fit(problem, [mode]))
     assert [one.name for one in found.effects] == [mode.name] * reported
     assert [one.name for one in small] == [mode.name] * (not reported)
