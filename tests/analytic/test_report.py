@@ -28,6 +28,9 @@ from feeddrive.diagnosis.judging.result import (
     Unexplained,
     error_without,
 )
+from feeddrive.diagnosis.unexplained.unexplained_result import Carried
+from feeddrive.effects.base import Port
+from feeddrive.effects.tabulated import TabulatedForce
 from feeddrive.errors import InputError
 from feeddrive.report.figures.drawing import dress, new_figure
 from feeddrive.report.figures.figures import curve_figures, render_figures, report_figures, save_figures
@@ -124,6 +127,20 @@ def test_verdict_says_what_is_missing_and_how_well_it_is_mended(found: Diagnosis
     assert "table position 3." in sentences[1] and "(sensor noise 0.0500 µm)" in sentences[1]
     assert "Not confirmed on data not fitted: friction level other than declared." in sentences
     assert any("cannot tell apart: moving mass other than declared and inertia" in one for one in sentences)
+
+
+def test_the_curve_of_a_law_is_told_apart_from_what_has_no_name(found: Diagnosis) -> None:
+    force = TabulatedForce.of(Port.TABLE, "velocity", velocity=(-0.1, 0.1), force=(1.0, -1.0))
+    table = Carried("motor_torque", force, {}, {}, {}, True)
+    own = dataclasses.replace(table, curve_of="stribeck")
+    for carried, said, not_said in (
+        (own, "what the catalogue's form misses of Stribeck friction", "no named effect explains"),
+        (table, "no named effect explains", "catalogue's form"),
+    ):
+        left = {"motor_torque": Unexplained(0.1, carried=(carried,))}
+        sentences = " ".join(verdict_sentences(dataclasses.replace(found, unexplained=left)))
+        assert said in sentences and not_said not in sentences and "over velocity" in sentences
+    assert own.record()["curve_of"] == "stribeck" and "curve_of" not in table.record()
 
 
 def test_nothing_missing_is_said_plainly() -> None:

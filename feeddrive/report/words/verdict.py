@@ -21,11 +21,11 @@ def verdict_sentences(diagnosis: Diagnosis) -> list[str]:
     tables = _tables(diagnosis) if diagnosis.effects else ""
     beside = f"Beside these it carries what no named effect explains: {tables}." if tables else ""
     curves = [
-        f"{effect_words(one.curve_of)}: {effect_words(one.name)} over {plain(one.variable)}"
+        f"{effect_words(one.curve_of)}, as {effect_words(one.name)} over {plain(one.variable)}"
         for one in _carried(diagnosis)
         if one.curve_of
     ]
-    another = f"Of another form than the catalogue's, with its curve carried: {'; '.join(curves)}." if curves else ""
+    another = f"It carries what the catalogue's form misses of {'; '.join(curves)}." if curves else ""
     stated = [one.statement for one in diagnosis.changes.changes]
     changed = f"Between the recordings changed: {'; '.join(stated)}." if stated else ""
     found = [_main_finding(diagnosis), diagnosis.untried, another, beside, changed]
