@@ -265,8 +265,10 @@ def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[
     progress("judging on data not fitted")
     judged, rehomed = _judged(found, evidence)
     if searched.changes is None:
-        found = with_law_tables(found, judged, lambda other: _judged(other, evidence)[0])
-        judged, rehomed = _judged(found, evidence)
+        carrying = with_law_tables(found, judged, lambda other: _judged(other, evidence)[0])
+        if carrying is not found:
+            found = carrying
+            judged, rehomed = _judged(found, evidence)
     if (fewer := without_stand_ins(found, judged)) is not found:
         found = fewer
         judged, rehomed = _judged(found, evidence)

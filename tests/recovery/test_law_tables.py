@@ -62,11 +62,10 @@ def test_a_curve_is_taken_anew_beside_a_law_that_has_grown(runs: tuple) -> None:
     small = fit(problem, [Stribeck.of(delta_force=-3.0, velocity=0.04)], iterations=0)
     _, opened = likeliest_curve(problem, small, 40)
     assert open_curves(opened) == ("stribeck",)
-    _, once = opened, fit(opened, small.effects, iterations=4)
     there, found = with_its_curves(opened, small)
     assert open_curves(there) == ("stribeck",)
-    sizes = [number(one.effects[0].values["delta_force"]) for one in (once, found)]
-    assert sizes[1] == pytest.approx(-45.0, rel=0.3)
+    # of -45 N; what the curve takes along the law is the law's, so that a third of it may be the curve's
+    assert number(found.effects[0].values["delta_force"]) == pytest.approx(-45.0, rel=0.3)
     own = there.evidence[0].curves["stribeck"], opened.evidence[0].curves["stribeck"]
     rms = [float(np.mean([np.std(part["motor_torque"]) for part in parts])) for parts in own]
     assert rms[0] > 5 * rms[1]  # a curve goes as far as its law does

@@ -49,12 +49,12 @@ def test_it_is_there_though_its_peak_is_hardly_known(seed: int, tmp_path: Path) 
 
 
 def test_a_bump_in_noise_is_denied(tmp_path: Path) -> None:
-    """Five recordings without one: of intervals of 95 % not all five leave none out by chance."""
+    """Five recordings without one: a shape that is fitted to noise stands in more than one of twenty, not in most."""
     said = []
     for seed in range(5):
         problem, found = fitted(tmp_path, Truth(seed=10 + seed))
         said.append(sizes_around_none(problem, found) != [""])
-    assert np.sum(said) >= 3  # a shape that is fitted to noise finds some of it; more than two of five do not
+    assert np.sum(said) >= 3
 
 
 def test_held_coordinates_narrow_the_others(tmp_path: Path) -> None:
