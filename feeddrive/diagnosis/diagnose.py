@@ -9,7 +9,7 @@ import numpy as np
 
 from feeddrive.blas_threads import one_thread
 from feeddrive.diagnosis.budget import Budget
-from feeddrive.diagnosis.calibration.calibrate import calibrated, weighed_alike
+from feeddrive.diagnosis.calibration.calibrate import calibrated, levelled_alike, weighed_alike
 from feeddrive.diagnosis.calibration.calibrated_result import calibrated_results, known_together
 from feeddrive.diagnosis.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of
 from feeddrive.diagnosis.certainty.correlation import correlation
@@ -21,13 +21,14 @@ from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.denied_again import settled_names
 from feeddrive.diagnosis.judging.effect_results import effect_results, refused_effects
-from feeddrive.diagnosis.judging.judge import Judged, channel_results, judged_recordings, prepared_for_judging, share_of
+from feeddrive.diagnosis.judging.judge import Judged, channel_results, judged_recordings, prepared_for_judging
 from feeddrive.diagnosis.judging.law_tables import with_law_tables, without_tables
 from feeddrive.diagnosis.judging.result import (
     Diagnosis,
     FileStamp,
 )
 from feeddrive.diagnosis.judging.veto import not_worse_than_declared, without_denied
+from feeddrive.diagnosis.judging.where_fitted import share_where_fitted
 from feeddrive.diagnosis.ledger.entry import kept_of
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.problem import Problem
@@ -168,7 +169,7 @@ def _reported(
     spans = all_intervals(found.problem, found.fit, known)
     effects = machine_as_last(searched, compared.listed)
     count = len(without_shifts(found.fit.effects))
-    shares = [share_of(found.problem, judged, found.fit.effects, i) for i in range(count)]
+    shares = [share_where_fitted(found.problem, found.fit, judged, i) for i in range(count)]
     progress("looking for what would settle doubts")
     no_time = budget.skips("which experiment settles a doubt")
     experiments = () if no_time else next_experiments(found, settled.rivals, spans)
@@ -261,7 +262,10 @@ def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[
     budget.end_of_search()
     found = searched.search
     machine = found.problem.machine(found.fit.effects)
-    evidence = [in_told_steps(one, machine, found.problem.predictor) for one in evidence]
+    noise = begun.problem.evidence, found.problem.evidence
+    evidence = [
+        in_told_steps(levelled_alike(one, *noise, machine), machine, found.problem.predictor) for one in evidence
+    ]
     progress("judging on data not fitted")
     judged, rehomed = _judged(found, evidence)
     if searched.changes is None:

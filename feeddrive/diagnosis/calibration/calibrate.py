@@ -18,6 +18,7 @@ from feeddrive.diagnosis.likelihood.fit import Fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.preparing import weighed_by
 from feeddrive.effects.base import Effect
+from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.long.joined import is_joined
 from feeddrive.typing import FloatArray
@@ -41,11 +42,23 @@ def calibrated(problem: Problem) -> Problem:
         before, start = start, recalibrated(start, (), rough=turn == 0)
         if turn > 0 and np.max(np.abs(moved(before, start)), initial=0.0) < ENOUGH:
             break
-    plant = start.machine(())
-    weighed = tuple(weighed_by(e, plant) for e in start.evidence)
-    if any(a is not b for a, b in zip(weighed, start.evidence, strict=True)):
-        start = recalibrated(replace(start, evidence=weighed), ())
-    return recalibrated(start.levelled(), ())
+    return _levelled_beside_encoder(start)
+
+
+def _levelled_beside_encoder(start: Problem) -> Problem:
+    """The problem with no channel's noise above what is left of it, the encoder's error weighed beside that noise.
+
+    A torque that answers the steps of the encoder is no noise of its sensor, and hides what they do to the comparison.
+    """
+    for turn in range(PASSES):
+        levelled = start.levelled()
+        quieter = [a.noise != b.noise for a, b in zip(levelled.evidence, start.evidence, strict=True)]
+        if turn and not any(quieter):
+            break
+        plant, before = levelled.machine(()), levelled.evidence
+        weighed = tuple(weighed_by(e, plant, quiet) for e, quiet in zip(before, quieter, strict=True))
+        start = recalibrated(replace(levelled, evidence=weighed), ())
+    return start
 
 
 def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:
@@ -145,6 +158,26 @@ def weighed_alike(evidence: Evidence, like: Sequence[Evidence]) -> Evidence:
         for name in evidence.channels
     }
     return replace(evidence, left=left) if any(one.left for one in like) else evidence
+
+
+def levelled_alike(evidence: Evidence, before: Sequence[Evidence], after: Sequence[Evidence], plant: Plant) -> Evidence:
+    """A recording with its noise put right as that of fitted ones was (`Problem.levelled`), its encoder beside that.
+
+    Args:
+        evidence: of the recording.
+        before, after: the fitted recordings as they were prepared, and with their noise put right.
+        plant: that shows the encoder's error.
+    """
+    share = {}
+    for name, noise in evidence.noise.items():
+        pairs = [(a.noise[name], b.noise[name]) for a, b in zip(before, after, strict=True) if name in a.noise]
+        ratios = [math.log(b / a) for a, b in pairs if a > 0 and b > 0]
+        if ratios and noise > 0 and (ratio := math.exp(float(np.mean(ratios)))) < 1:
+            share[name] = ratio
+    if not share:
+        return evidence
+    noise_there = {name: noise * share.get(name, 1.0) for name, noise in evidence.noise.items()}
+    return weighed_by(replace(evidence, noise=noise_there), plant, quieter=True)
 
 
 def with_recordings(problem: Problem, effects: Sequence[Effect], more: Sequence[Evidence]) -> Problem:

@@ -92,6 +92,29 @@ def certainty(problem: Problem, fitted: Fit, held: Sequence[int] = ()) -> Certai
     return Certainty(covariance, reach)
 
 
+def certainty_along(problem: Problem, fitted: Fit, group: IntegerArray) -> tuple[FloatArray, Certainty]:
+    """How well a group of coordinates is known along the directions that the recordings tell apart.
+
+    A level that all nodes of a curve share may not be told from a declared value that is fitted as well. In the
+    covariance of the nodes it drowns, by rounding, what is known of their differences; along directions of its own it
+    does not.
+
+    Args:
+        problem: recordings.
+        fitted: effects.
+        group: places of the coordinates, (n,).
+
+    Returns:
+        Directions of the group's coordinates, in columns, (n, n), and how well the coordinates along them are known.
+    """
+    jacobian = slopes(problem, fitted)
+    own, others = jacobian[:, group], np.delete(jacobian, group, axis=1)
+    if others.shape[1]:
+        own = own - others @ np.linalg.lstsq(others, own, rcond=None)[0]
+    _, _, rows = np.linalg.svd(own, full_matrices=False)
+    return rows.T, _certainty(problem, fitted, own @ rows.T)
+
+
 def _certainty(problem: Problem, fitted: Fit, jacobian: FloatArray) -> Certainty:
     """How well coordinates are known of which these are the slopes, (m, k)."""
     inverse = inverse_information(jacobian.T @ jacobian)

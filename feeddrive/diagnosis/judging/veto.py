@@ -3,8 +3,9 @@
 An effect that the search took is not reported as found where
 
 - a value of it ran to the end of what is physical: the end is no estimate;
-- it does not lower the error on the judged data; where they could hardly show it, or it lowers it by no more than the
-  gain's scatter, the gain on blocks left out of the fit must be three times its scatter instead;
+- it does not lower the error on the judged data where its variable is as it was fitted (`where_fitted`); where they
+  could hardly show it, or it lowers it by no more than the gain's scatter, the gain on blocks left out of the fit must
+  be three times its scatter instead;
 - the intervals of all its sizes hold the absent effect (no amplitude, a factor of one), or, where it says that a
   declared value is other, that value within its tolerance;
 - with it friction would push the axis, which no plant file may hold, and without it not;
@@ -36,11 +37,12 @@ from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
 from feeddrive.diagnosis.calibration.stated import is_within_tolerance, without_effects
 from feeddrive.diagnosis.certainty.one_sided import one_sided
 from feeddrive.diagnosis.certainty.profile import size_beside_shape
-from feeddrive.diagnosis.certainty.uncertainty import Certainty, certainty
+from feeddrive.diagnosis.certainty.uncertainty import Certainty, certainty, certainty_along
 from feeddrive.diagnosis.finding.attempt import with_short_blocks
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import ITERATIONS
 from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
+from feeddrive.diagnosis.judging.where_fitted import unseen, where_fitted
 from feeddrive.diagnosis.likelihood.coordinates import (
     LEFT,
     absent_coordinates,
@@ -192,8 +194,15 @@ def _instead(found: Search, place: int, gains: Sequence[float]) -> Denied:
 
 
 def _share(found: Search, judged: Sequence[Judged], place: int) -> Share:
-    """What an effect explains; where that is much, the others are moved by one linear step only, not refitted."""
+    """What an effect explains where its variable is as it was fitted (`where_fitted`).
+
+    Where that is much, the others are moved by one linear step only, not refitted.
+    """
     problem, effects = found.problem, found.fit.effects
+    there = where_fitted(problem, found.fit, judged, effects[place])
+    if not there:
+        return unseen(judged)
+    judged = there
     rest = (*effects[:place], *effects[place + 1 :])
     if regained(problem, rest) is not problem:  # one step from samples that a free play predicts leads nowhere
         return share_of(problem, judged, effects, place)
@@ -315,6 +324,7 @@ def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
         if not sure and size_beside_shape(problem, fitted, place) is not None:
             there = certainty(problem, fitted, shapes)
             sure = any(_is_not_none(there, beyond, group) for group in nodes)
+        sure = sure or any(_is_apart(problem, fitted, beyond, group) for group in nodes if len(group) > 1)
         denied = not sure and one_sided(problem, fitted, place) is None
         result.append(AROUND_NONE if denied else "")
         at += count
@@ -344,9 +354,24 @@ def _is_not_none(known: Certainty, beyond: FloatArray, group: IntegerArray) -> b
     part = known.half_covariance[np.ix_(group, group)]
     if len(group) == 1:
         return bool(abs(beyond[group[0]]) > math.sqrt(part[0, 0]))
+    return _is_far(beyond[group], part)
+
+
+def _is_apart(problem: Problem, fitted: Fit, beyond: FloatArray, group: IntegerArray) -> bool:
+    """Whether a group of coordinates is distinguished from none along the directions that the recordings tell apart."""
+    directions, known = certainty_along(problem, fitted, group)
+    return _is_far(directions.T @ beyond[group], known.half_covariance)
+
+
+def _is_far(beyond: FloatArray, half_covariance: FloatArray) -> bool:
+    """Whether coordinates, (n,), are further from none than chance takes them, all together."""
+    half = np.sqrt(np.diag(half_covariance))
+    known = half > 0
+    alike = half_covariance[np.ix_(known, known)] / np.outer(half[known], half[known])
+    over = beyond[known] / half[known]
     # half widths are 1.96 standard deviations
-    square = float(beyond[group] @ np.linalg.pinv(part, hermitian=True) @ beyond[group]) * 1.96**2
-    return square > float(chdtri(len(group), 0.05))
+    square = float(over @ np.linalg.pinv(alike, hermitian=True) @ over) * 1.96**2
+    return square > float(chdtri(np.count_nonzero(known), 0.05))
 
 
 def friction_that_pushes(problem: Problem, effects: Sequence[Effect]) -> list[str]:

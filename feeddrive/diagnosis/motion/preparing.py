@@ -151,14 +151,16 @@ def _noise(
     return noise
 
 
-def weighed_by(evidence: Evidence, plant: Plant) -> Evidence:
+def weighed_by(evidence: Evidence, plant: Plant, quieter: bool = False) -> Evidence:
     """The evidence with the encoder's error as a plant shows it: at its resonances, not at those of the declared one.
 
     Args:
         evidence: prepared for the declared plant.
         plant: nearer to the machine.
+        quieter: whether the noise is less than that beside which it was asked before; where the error did not matter
+            then it is asked again.
     """
-    if not isinstance(evidence, AxisEvidence) or not evidence.gains or evidence.scaled_from:
+    if not isinstance(evidence, AxisEvidence) or evidence.scaled_from or not (evidence.gains or quieter):
         return evidence
     telling = evidence.measured.get("motor_torque") if evidence.fitted.any() else None
     there = evidence.placed(plant)

@@ -181,8 +181,10 @@ def is_worth_a_search(fault: Suspect, mended: Problem, found: Search) -> bool:
     if fault.beside:
         return True
     problem, _ = _begun(found)
-    least = math.inf
-    for effect in found.fit.effects:
+    effects, least = found.fit.effects, math.inf
+    if len(effects) == 1:  # at its end, which a fit from the declared values on need not reach
+        least = found.problem.plain_error(effects)
+    for effect in effects:
         stated, said = said_by_effects(problem, [effect])
         there, alone = refitted(stated, fit(stated, said))
         least = min(least, there.plain_error(alone.effects))
