@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from feeddrive.diagnosis.calibration.calibrate import calibrated, levelled_alike
 from feeddrive.diagnosis.likelihood.encoder_along import encoder_along
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, log_odds, odds_between, variance_along
+from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.plant.file.plant_file import read_plant
 from tests.recovery.fleet.case import ENCODER_NULLS
 from tests.recovery.fleet.problem import calibrated_case
+from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
 
 RINGING = ENCODER_NULLS + 17_752
 """A machine of 442 kg with 17 bits and a scale of 0.5 µm, at 2 kHz, that lacks nothing."""
@@ -61,3 +66,22 @@ def test_an_encoder_that_tells_its_motion_gives_nothing(tmp_path: Path) -> None:
     fine = calibrated_case(ENCODER_NULLS + 24_752, tmp_path)
     assert not any(evidence.at_draws for evidence in fine.evidence)
     assert encoder_along(fine, fine.machine(()), fine.machine([FORCE])) == 0.0
+
+
+def test_a_torque_that_answers_the_steps_is_no_noise_beside_which_they_do_not_matter(tmp_path: Path) -> None:
+    """What a loop answers beyond the band reads as noise of the torque; it is put right, and the steps asked again."""
+    path = tmp_path / "rigid.toml"
+    path.write_text(PLANT, encoding="utf-8")
+    run = rigid_run("answering", Truth())
+    rows, step = np.arange(len(run.time)), 2 * np.pi / 2**12
+    coarse = step * np.round(run["motor_angle"] / step)
+    answered = run["motor_torque"] + 0.3 * (-1.0) ** rows * (1 + 0.5 * np.sin(0.3 * rows))
+    loud = run.with_channels({"motor_angle": coarse, "motor_torque": answered})
+    problem, _, _ = prepared(read_plant(path), [loud], [], 1.0)
+    (before,) = problem.evidence
+    (after,) = calibrated(problem).evidence
+    assert not before.at_draws
+    assert after.at_draws and after.noise["motor_torque"] < 0.3 * before.noise["motor_torque"]
+    judged = levelled_alike(before, problem.evidence, [after], problem.plant)
+    assert judged.noise == pytest.approx(after.noise) and judged.at_draws
+    assert levelled_alike(before, problem.evidence, problem.evidence, problem.plant) is before

@@ -115,7 +115,7 @@ class Problem:
         """
         evidence = []
         for e, rows in zip(self.evidence, self.by_channel(self.residual(effects)), strict=True):
-            left = {name: float(np.mean(one**2)) for name, one in rows.items()}
+            left = {name: float(np.mean(one**2)) / e.kept for name, one in rows.items()}
             level = {name: math.sqrt(one) if 0 < one < LEVEL**2 else 1.0 for name, one in left.items()}
             evidence.append(replace(e, noise={name: noise * level.get(name, 1.0) for name, noise in e.noise.items()}))
         return replace(self, evidence=tuple(evidence))

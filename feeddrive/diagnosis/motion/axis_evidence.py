@@ -223,7 +223,7 @@ class AxisEvidence(Evidence):
             return self
         motion, *drawn = (one.timed(clock(self.recording)) for one in (encoder.motion, *encoder.drawn))
         weighed = replace(self, gains=encoder.gains, added=encoder.added, unsure=encoder.unsure, evened_unsure={})
-        told = replace(weighed, motion=motion, told=encoder.told, drawn=tuple(drawn))
+        told = replace(weighed, motion=motion, told=encoder.told, drawn=tuple(drawn), kept=encoder.kept)
         return told.in_steps(self.motion.every)
 
     @property

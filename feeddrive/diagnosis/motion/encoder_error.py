@@ -93,6 +93,8 @@ class EncoderError:
         unsure: of every part of the motion that may not be, channel to what the plant makes of it, in the band, (n,)
             [SI] (`unsure_motion`).
         told: part of the motion that the torque tells, (n,) [rad].
+        kept: share of the noise's power in the band that is left once frequencies of more error than motion count for
+            little.
     """
 
     motion: MotorMotion
@@ -101,6 +103,7 @@ class EncoderError:
     added: dict[str, float]
     unsure: tuple[dict[str, FloatArray], ...]
     told: FloatArray
+    kept: float
 
 
 @dataclass(frozen=True)
@@ -182,13 +185,15 @@ def encoder_error(
         gains[name] = 1 / np.sqrt(1 + np.interp(frequencies, frequency, over))
     if not material:
         return None
-    gains = {name: gain / (1 + (share / SMALL) ** 2) for name, gain in gains.items()}
+    small = 1 / (1 + (share / SMALL) ** 2)
+    gains = {name: gain * small for name, gain in gains.items()}
+    kept = float(np.mean(small[frequencies <= band.edge] ** 2))
     held = braked_modes(plant, plant.middle).poles
     parts = unsure_motions(expected, share, sample_time, band.edge, [p for p in held if p.imag > 0])
     unsure = []
     for run in _runs(plant, time, (expected + told + known.uncertain(part) for part in parts)):
         unsure.append({name: units[name] * band.filter(_answer(run, name) - _answer(runs[0], name)) for name in noise})
-    return EncoderError(motion, tuple(drawn), gains, added, tuple(unsure), told)
+    return EncoderError(motion, tuple(drawn), gains, added, tuple(unsure), told, kept)
 
 
 def _runs(plant: Plant, time: FloatArray, angles: Iterator[FloatArray]) -> Iterator[LoadMotion]:
