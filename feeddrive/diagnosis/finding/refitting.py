@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,9 +25,11 @@ from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between
 from feeddrive.diagnosis.motion.row_steps import in_told_steps
-from feeddrive.effects.base import number
+from feeddrive.effects.base import Effect, number
 from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.chain.stiffness_deviation import WHOLE, StiffnessDeviation
 from feeddrive.effects.chain.structural_mode import StructuralMode, resonates_within
+from feeddrive.effects.transmission.preload_loss import PreloadLoss
 
 
 def refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
@@ -178,6 +181,27 @@ def with_value_back(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:
             there = without_effects(problem, [effect], rest)
             return refitted(there, fit(there, rest))
     return None
+
+
+def with_softer_spring(problem: Problem, found: Fit, gone: Sequence[Effect]) -> tuple[Problem, Fit] | None:
+    """The set with a spring as soft under every force in the place of a lost preload; None where that is not asserted.
+
+    Args:
+        problem: recordings.
+        found: the set.
+        gone: those of its effects that are out, the lost preload among them.
+    """
+    soft = next((one for one in gone if isinstance(one, PreloadLoss)), None)
+    if soft is None:
+        return None
+    place = "nut" if "nut_stiffness" in problem.plant.chain_values() else WHOLE
+    factor = StiffnessDeviation.parameter("factor")
+    ratio = min(max(number(soft.values["ratio"]), factor.minimum), factor.maximum)
+    rest = [effect for effect in found.effects if not any(effect is one for one in gone)]
+    own, effects = said_by_effects(problem, [*rest, StiffnessDeviation.of(None, place, factor=ratio)])
+    there, result = refitted(own, fit(own, effects, iterations=JOINT_ITERATIONS))
+    *others, softer = result.effects
+    return (there, result) if is_beyond(there, others, softer) else None
 
 
 def with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit, Comparison] | None:

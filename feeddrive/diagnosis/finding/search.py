@@ -32,6 +32,7 @@ from feeddrive.diagnosis.finding.refitting import (
     refitted,
     where_friction_brakes,
     with_scale_beyond,
+    with_softer_spring,
     with_value_back,
     with_value_beyond,
     with_value_from_declared,
@@ -46,6 +47,7 @@ from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between
 from feeddrive.effects.base import Effect
+from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
 from feeddrive.effects.transmission.backlash import Backlash
 
 MOST_ROUNDS = 12
@@ -163,7 +165,8 @@ def search(
         if others:  # the search goes on with the name that the law has run to
             denied |= dict.fromkeys((effect.name for effect in others), ANOTHER)
             impossible |= denied
-            problem, found = refitted(problem, fit(problem, _without(found, others)))
+            softer = None if StiffnessDeviation.name in denied else with_softer_spring(problem, found, others)
+            problem, found = softer or refitted(problem, fit(problem, _without(found, others)))
         moved = None if others else at_likelier_place(problem, found, asked.now.count)
         if moved is not None and members_of(moved[1].effects) not in met:
             met |= {members_of(found.effects), members_of(moved[1].effects)}
