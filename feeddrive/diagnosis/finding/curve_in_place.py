@@ -1,8 +1,8 @@
 """What is likelier than a further name, or than a declared value beyond its tolerance: a lead map, the curve of a law.
 
 A law of another form than ours leaves something that further names, and declared values, take up each as far as it
-helps. The law with its own curve must leave what counts as noise (`LEVEL`): where more is left, more is missing than a
-form.
+helps. The law with its own curve must leave what counts as noise (`LEVEL`), for where more is left, more is missing
+than a form; or less than the law leaves beside the likeliest name, which is then no more the cause of the rest.
 """
 
 from __future__ import annotations
@@ -52,8 +52,7 @@ def of_no_name(problem: Problem, found: Fit, taken: Taken | None, count: int) ->
 def of_its_own_form(problem: Problem, found: Fit, taken: Taken, count: int) -> tuple[Problem, Fit] | None:
     """A set beside the curve of one of its laws, where a likelier set lacks such a law and the curve is likelier still.
 
-    What another form of a law leaves beside it is smaller once two others share what the law takes. The law and its
-    curve must leave what counts as noise, as beside another name.
+    What another form of a law leaves beside it is smaller once two others share what the law takes.
     """
     stays = members_of(taken.fit.effects)
     if not has_curve([effect for effect in found.effects if member(effect) not in stays]):
@@ -62,14 +61,11 @@ def of_its_own_form(problem: Problem, found: Fit, taken: Taken, count: int) -> t
     if odds <= taken.odds:
         return None
     there = fit(opened, found.effects, iterations=JOINT_ITERATIONS)
-    return (opened, there) if _level(opened, there) * LEVEL**2 < 1 else None
+    return (opened, there) if _leaves_less(Standing(opened, there), Standing(taken.problem, taken.fit)) else None
 
 
 def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
-    """A likelier set without one or all names that it adds, where the curve of another of its laws is likelier.
-
-    The law and its curve must leave what counts as noise (`LEVEL`): where more is left, more than a form is missing.
-    """
+    """A likelier set without one or all names that it adds, where the curve of another of its laws is likelier."""
     effects, added = taken.fit.effects, len(taken.names)
     problem = with_curves_of(taken.problem, effects)
     best, chosen = 0.0, None
@@ -82,7 +78,7 @@ def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
             odds, opened = likeliest_curve(problem, without, count)
             odds -= log_odds(problem, without, taken.fit, count)
             there = fit(opened, rest, iterations=JOINT_ITERATIONS)
-            if odds > best and _level(opened, there) * LEVEL**2 < 1:
+            if odds > best and _leaves_less(Standing(opened, there), Standing(taken.problem, taken.fit)):
                 best, chosen = odds, (opened, without)
     return chosen
 
@@ -100,7 +96,7 @@ def curve_of_value(
     if odds <= max(odds_between(Standing(problem, found), Standing(*beyond[:2]), count), 0.0):
         return None
     there = fit(opened, found.effects, iterations=JOINT_ITERATIONS)
-    return with_its_curves(opened, there) if _level(opened, there) * LEVEL**2 < 1 else None
+    return with_its_curves(opened, there) if _leaves_less(Standing(opened, there), Standing(*beyond[:2])) else None
 
 
 def with_its_curves(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
@@ -120,6 +116,12 @@ def with_its_curves(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
         problem = with_curves_anew(problem, found.effects)
         found = fit(problem, found.effects, iterations=JOINT_ITERATIONS)
     return problem, found
+
+
+def _leaves_less(curved: Standing, named: Standing) -> bool:
+    """Whether a set beside a curve leaves what counts as noise, or less than one with a name, as far as levels tell."""
+    level = _level(curved.problem, curved.fit)
+    return level * LEVEL**2 < 1 or level < LEVEL**2 * _level(named.problem, named.fit)
 
 
 def _level(problem: Problem, found: Fit) -> float:
