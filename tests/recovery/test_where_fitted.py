@@ -73,8 +73,10 @@ def test_where_strokes_overlap_the_law_is_asked_there(rigid: Plant) -> None:
     every, inside = judged[0].evidence.judged_rows, there.evidence.judged_rows
     position = R * beside["motor_angle"]
     known = R * problem.evidence[0].recording["motor_angle"][problem.evidence[0].fit_rows]
-    # to a row at either end: the samples of table and motor are a step apart
-    assert abs(np.count_nonzero(inside) - np.count_nonzero(every & (position <= known.max()))) <= 40
+    # the simulated position and the recorded one are a step apart at most: two rows wherever a stroke passes the end
+    wanted = every & (position >= known.min()) & (position <= known.max())
+    passes = np.count_nonzero(np.diff(wanted.astype(int)))
+    assert np.count_nonzero(inside != wanted) <= 2 * passes < 0.1 * np.count_nonzero(wanted)
     assert not inside[position > known.max() + 1e-3].any()
     assert share_where_fitted(problem, found, judged, 0).carries
 

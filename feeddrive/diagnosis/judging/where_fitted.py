@@ -61,7 +61,7 @@ def share_where_fitted(problem: Problem, found: Fit, judged: Sequence[Judged], p
     """
     every = share_of(problem, judged, found.effects, place)
     there = where_fitted(problem, found, judged, found.effects[place])
-    if all(a is b for a, b in zip(there, judged, strict=False)) and len(there) == len(judged):
+    if there == list(judged):
         return every
     inside = share_of(problem, there, found.effects, place) if there else unseen(judged)
     return replace(inside, explains=every.explains)
