@@ -12,14 +12,14 @@ from feeddrive.diagnosis.finding.likelier import Taken
 from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_curves, with_curves_of
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.law_curve import STEPS, law_curves
-from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import log_odds
 from feeddrive.diagnosis.motion.prediction import AxisPredictor
 from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from tests.generator.axis import AXES
-from tests.generator.effects import CoulombAsymmetry, PositionSpring, ViscousAsymmetry
+from tests.generator.effects import CoulombAsymmetry, PositionSpring, TorqueRipple, ViscousAsymmetry
 from tests.generator.effects import Effect as Planted
 from tests.generator.effects.relatives import Relative
 from tests.generator.pair import recording_pair
@@ -101,6 +101,22 @@ def test_the_curve_of_a_law_is_asked_before_a_set_that_lacks_the_law() -> None:
     assert of_its_own_form(problem, alone, replace(fewer, odds=2 * odds), COUNT) is None
     both = fit(problem, [*alone.effects, *others.effects])  # names that come beside a law are asked otherwise
     assert of_its_own_form(problem, alone, replace(fewer, fit=both), COUNT) is None
+
+
+def test_a_curve_is_taken_that_leaves_more_than_noise_where_the_likeliest_name_leaves_more() -> None:
+    """A second, undeclared effect keeps every set from leaving noise alone."""
+    problem = problem_of(Relative(ViscousAsymmetry(100.0), "root", POWER), TorqueRipple(0.06, 3.0, 0.3))
+    alone, others = (fit(problem, [*map(start, names)]) for names in (["viscous_asymmetry"], ["coulomb_asymmetry"]))
+    odds, _ = likeliest_curve(problem, alone, COUNT)
+    opened = of_its_own_form(problem, alone, Taken(problem, others, "coulomb_asymmetry", 0.5 * odds), COUNT)
+    assert opened is not None
+    left = opened[0].plain_error(opened[1].effects)
+    assert left > 1 / LEVEL**2 and left < LEVEL**2 * problem.plain_error(others.effects)
+    # a name that leaves hardly more may be the cause of the rest: it is asked on
+    ripple = EFFECTS["torque_ripple"].of(amplitude=0.06, order=3.0, phase=0.3)
+    better = Taken(problem, fit(problem, [*others.effects, ripple]), "coulomb_asymmetry", 0.5 * odds)
+    assert problem.plain_error(better.fit.effects) < left
+    assert of_its_own_form(problem, alone, better, COUNT) is None
 
 
 def test_laws_at_other_scales_follow_a_longer_tail() -> None:

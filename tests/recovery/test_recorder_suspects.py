@@ -175,6 +175,21 @@ def test_a_mended_recording_is_searched_where_the_fault_leaves_as_little_as_an_e
         assert is_worth_a_search(replace(fault, beside=True), mended, found)
 
 
+def test_a_fault_must_leave_as_little_as_the_one_effect_does_where_the_search_ended(rigid: Plant) -> None:
+    """A fit from the declared values on may end elsewhere: what the recording begun with holds beside stands for it."""
+    heavy, light = (runs(36, Truth(mass=mass))[0] for mass in (9.0, 4.0))
+    shaken = np.sin(40.0 * heavy.time)
+    ended, begun = (
+        searched(rigid, with_torque(heavy, heavy["motor_torque"] + size * shaken), Payload.of(mass=4.0))
+        for size in (0.0, 10 * NOISE)
+    )
+    mended, _, _ = prepared(rigid, [with_torque(light, light["motor_torque"] + 3 * NOISE * shaken)], [light], 0.75)
+    found = replace(ended, fit=fit(ended.problem, ended.fit.effects), begun=begun.begun)
+    fault = Suspect(GAIN, 0.1)
+    assert not is_worth_a_search(fault, mended, found)
+    assert is_worth_a_search(fault, mended, replace(begun, fit=fit(begun.problem, begun.fit.effects)))
+
+
 def test_an_offset_and_a_constant_force_are_said_together(rigid: Plant) -> None:
     one, other = (with_torque(run, run["motor_torque"] + 0.01) for run in runs(13, Truth()))
     result, _ = diagnose(rigid, [one], [other])
