@@ -84,7 +84,7 @@ def test_nothing_is_named_within_tolerance(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("key", "text", "value"),
-    [("table.mass", "190 kg", 190.0), ("ball_screw.diameter", "34 mm", 0.034)],
+    [("table.mass", "190 kg", 190.0), pytest.param("ball_screw.diameter", "34 mm", 0.034, marks=pytest.mark.slow)],
 )
 def test_a_value_beyond_its_tolerance_is_found(tmp_path: Path, key: str, text: str, value: float) -> None:
     axis = fd.load("kimm_testbed")

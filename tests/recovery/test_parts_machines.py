@@ -122,6 +122,7 @@ def diagnosed(name: str, part: str, factor: float) -> Diagnosis:
     return diagnose(read_plant(find_plant(name)), [fitted], validation=[judged])[0]
 
 
+@pytest.mark.slow
 def test_nothing_is_found_where_nothing_is_planted() -> None:
     result = diagnosed("kimm_testbed", "", 1.0)
     assert [effect.name for effect in result.effects] == []

@@ -64,7 +64,7 @@ def assert_friction_is_found(result: Diagnosis, tolerance: float) -> None:
     assert found["viscous_factor"].value == pytest.approx(0.8, rel=tolerance)
 
 
-@pytest.mark.parametrize("effect", [None, STRONGER])
+@pytest.mark.parametrize("effect", [None, pytest.param(STRONGER, marks=pytest.mark.slow)])
 def test_strokes_at_100_hertz(effect: Effect | None) -> None:
     result = diagnosed(every(20, strokes(effect, (40.0, 30.0))))
     if effect:

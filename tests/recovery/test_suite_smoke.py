@@ -1,6 +1,7 @@
 """One case of the recovery suite for every effect, at the size that is worth half of the error: named, and error gone.
 
-They run with the other tests, and by `make recovery-smoke` alone. The whole suite is `make recovery`.
+All of them run by `make recovery-smoke`, and those of `FAST` with the other tests: one for every place that an effect
+can have. The whole suite is `make recovery`.
 """
 
 from __future__ import annotations
@@ -20,11 +21,15 @@ CASES = {next(iter(case.planted)): case for case in smoke_cases()}
 KNOWN_MISSES: dict[str, str] = {}
 """Effect to why it is not named at this size. A strict list: an effect that is named comes off it."""
 
+FAST = ("friction_deviation", "torque_ripple", "lead_error_periodic", "presliding", "viscosity_temperature", "heat_sink")
+"""At the guides, the motor, the screw's lead, a contact; and two of heat: each takes some ten seconds."""
+
 
 def parameter(name: str) -> Any:
     """The effect as a parameter, expected to fail where the package has no such effect or it is a known miss."""
     why = KNOWN_MISSES.get(name, "" if name in EFFECTS or name in THERMAL_EFFECTS else "no effect of this name yet")
-    return pytest.param(name, marks=pytest.mark.xfail(reason=why) if why else ())
+    marks = [pytest.mark.xfail(reason=why)] if why else []
+    return pytest.param(name, marks=marks if name in FAST else [*marks, pytest.mark.slow])
 
 
 @pytest.mark.parametrize("name", [parameter(name) for name in CASES])
