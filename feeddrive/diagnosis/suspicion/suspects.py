@@ -44,7 +44,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 )
 from feeddrive.diagnosis.likelihood.fit import Fit, fit, linear_step
 from feeddrive.diagnosis.likelihood.folds import block_numbers
-from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
 from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.diagnosis.recordings.recordings import is_shift
@@ -171,7 +171,8 @@ def is_worth_a_search(fault: Suspect, mended: Problem, found: Search) -> bool:
     """Whether recordings that were mended of a fault are to be searched.
 
     Beside what was found it pays, or alone it leaves as little as the best effect that was found does. Slopes have said
-    so; here each has the declared values as they are most likely beside it.
+    so; here each has the declared values as they are most likely beside it. Where one effect of one value was found, a
+    fault that leaves noise, and no less of it, stays without a search: nobody can tell the two.
 
     Args:
         fault: as suspected.
@@ -181,14 +182,16 @@ def is_worth_a_search(fault: Suspect, mended: Problem, found: Search) -> bool:
     if fault.beside:
         return True
     problem, _ = _begun(found)
-    effects, least = found.fit.effects, math.inf
+    effects, least, left = found.fit.effects, math.inf, mended.plain_error(())
     if len(effects) == 1:  # at its end, which a fit from the declared values on need not reach
         least = found.problem.plain_error(effects)
+        if len(found.fit.coordinates) == 1 and left < 1 / LEVEL**2 and not left < least / SAME_ERROR:
+            return False  # one value for one, and what is left is noise, of which a name takes nothing
     for effect in effects:
         stated, said = said_by_effects(problem, [effect])
         there, alone = refitted(stated, fit(stated, said))
         least = min(least, there.plain_error(alone.effects))
-    return mended.plain_error(()) <= SAME_ERROR * least
+    return left <= SAME_ERROR * least
 
 
 def _begun(found: Search) -> tuple[Problem, Fit]:
