@@ -10,6 +10,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy.signal import firwin, upfirdn
 
 from feeddrive.typing import FloatArray
@@ -69,8 +70,8 @@ def at_rows(series: FloatArray, every: int, rows: int) -> FloatArray:
     """A series at the steps, (m,), at all rows between them, (rows,)."""
     reach = BETWEEN[0]
     before, behind = 2 * series[0] - series[reach:0:-1], 2 * series[-1] - series[-2 : -reach - 2 : -1]
-    filled = upfirdn(_taps_between(every), np.concatenate([before, series, behind]), up=every)
-    found: FloatArray = filled[2 * reach * every :][:rows]
+    about = sliding_window_view(np.concatenate([before, series, behind]), 2 * reach + 1)
+    found: FloatArray = (np.ascontiguousarray(about) @ _taps_between(every)).ravel()[:rows]
     return found
 
 
@@ -82,8 +83,11 @@ def _taps(reach: int, shape: float, every: int) -> FloatArray:
 
 @lru_cache(maxsize=16)
 def _taps_between(every: int) -> FloatArray:
-    """Those that meet at a row add up to one."""
-    taps = _taps(*BETWEEN, every).copy()
-    for first in range(every):
-        taps[first::every] /= np.sum(taps[first::every])
-    return taps
+    """Shares, (2 reach + 1, every), of the steps about one in it and the rows behind it; those of a row add up to one.
+
+    A row p behind a step is p / every of a step nearer to those that follow.
+    """
+    reach = BETWEEN[0]
+    taps = np.append(_taps(*BETWEEN, every), np.zeros(every - 1)).reshape(2 * reach + 1, every)[::-1]
+    shares: FloatArray = np.ascontiguousarray(taps / np.sum(taps, axis=0))
+    return shares

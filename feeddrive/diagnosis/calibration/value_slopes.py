@@ -122,7 +122,7 @@ def slopes_of(
     bounces = has_play(effects) and evidence.lost is not None
     each, alike = np.eye(len(known.values)), np.array([one.scales_with_force / one.deviation for one in known.values])
     smooth, base = problem.predictor.smooth(problem.plant) and not bounces, at(alike, 0.0)
-    slopes = {name: np.empty((len(base[name]), len(known.values))) for name in evidence.channels}
+    slopes = {name: np.empty((len(base[name]), len(known.values)), order="F") for name in evidence.channels}
     sizes = np.zeros(len(known.values))
     if smooth and not rough and known.slopes and problem.whitener is not None:
         sizes = np.linalg.norm(problem.whitener.columns, axis=0)

@@ -173,25 +173,41 @@ class AxisEvidence(Evidence):
         return math.hypot(self.noise[name], self.added.get(name, 0.0))
 
     def evened(self, name: str, series: FloatArray, every: int) -> FloatArray:
-        """A channel, (n,), at every k-th sample, each frequency weighed by sensor noise over that and the encoder's."""
+        """A channel, (n,), at every k-th sample, each frequency weighed by sensor noise over that and the encoder's.
+
+        Every k-th sample carries all that is in the band, and so all that is weighed.
+        """
+        thin = series[::every]
         if name not in self.gains:
-            return series[::every]
-        known = np.isfinite(series)
+            return thin
+        ends, known = self._ends_at(every), np.isfinite(thin)
         gaps = not known.all()
-        within = _reach(self._between_ends & known) if gaps else self._ends
-        inner = series[within]
-        there = inner[known[within]] if gaps else inner
-        mean = float(np.mean(there)) if len(there) else 0.0  # apart, so that gaps do not make steps
-        filled = np.zeros(len(series))
-        filled[within] = np.where(known[within], inner - mean, 0.0) if gaps else inner - mean
+        if gaps:
+            ends = _reach(self._between_ends[::every] & known)
+        inner, there = thin[ends], known[ends]
+        mean = float(np.mean(inner[there])) if there.any() else 0.0  # apart, so that gaps do not make steps
+        filled = np.zeros(len(thin))
+        filled[ends] = np.where(there, inner - mean, 0.0)
         if len(inner):  # nor does a slow error end in one
-            filled[: within.start], filled[within.stop :] = filled[within.start], filled[within.stop - 1]
-        key = (name, every)
-        if key not in self._weighing:
-            self._weighing[key] = Weighing.of(self.gains[name], len(self.counted), every)
-        weighed = self._weighing[key](filled)
+            filled[: ends.start], filled[ends.stop :] = filled[ends.start], filled[ends.stop - 1]
+        weighed = self._weighing(name, every)(filled)
         weighed += self.gains[name][0] * mean
-        return np.where(known[::every], weighed, series[::every]) if gaps else weighed
+        return np.where(known, weighed, thin) if gaps else weighed
+
+    def _weighing(self, name: str, every: int) -> Weighing:
+        """Gains of a channel for its series at every k-th sample."""
+        key = (name, every)
+        if key not in self._weighings:
+            count = len(self.counted)
+            thin = -(-count // every)
+            frequencies = np.arange(thin // 2 + 1) / (thin * every)
+            gains = np.interp(frequencies, np.arange(count // 2 + 1) / count, self.gains[name])
+            self._weighings[key] = Weighing.of(gains, thin)
+        return self._weighings[key]
+
+    def _ends_at(self, every: int) -> slice:
+        """Of every k-th sample those from the first that counts to the last."""
+        return self._ends if every == 1 else _reach(self._between_ends[::every])
 
     @cached_property
     def _ends(self) -> slice:
@@ -209,7 +225,7 @@ class AxisEvidence(Evidence):
         return inside
 
     @cached_property
-    def _weighing(self) -> dict[tuple[str, int], Weighing]:
+    def _weighings(self) -> dict[tuple[str, int], Weighing]:
         """By channel and every how many samples are asked for."""
         return {}
 
