@@ -60,7 +60,8 @@ from feeddrive.plant.analysis.modes import braked_modes
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.flaws import quantisation_step
-from feeddrive.simulate.driven import LoadMotion, MotorMotion, motor_motions, simulate_driven
+from feeddrive.simulate.driven import GRID, LoadMotion, MotorMotion, motor_motion, motor_motions, simulate_driven
+from feeddrive.simulate.row_steps import at_rows, at_steps, step_count
 from feeddrive.typing import FloatArray
 
 MATERIAL = 0.1
@@ -190,20 +191,41 @@ def encoder_error(
     kept = float(np.mean(small[frequencies <= band.edge] ** 2))
     held = braked_modes(plant, plant.middle).poles
     parts = unsure_motions(expected, share, sample_time, band.edge, [p for p in held if p.imag > 0])
-    unsure = []
-    for run in _runs(plant, time, (expected + told + known.uncertain(part) for part in parts)):
-        unsure.append({name: units[name] * band.filter(_answer(run, name) - _answer(runs[0], name)) for name in noise})
+    moved = (known.uncertain(part) for part in parts)
+    answers = _made_of(plant, expected + told, moved, sample_time)
+    unsure = [{name: units[name] * band.filter(one[name]) for name in noise} for one in answers]
     return EncoderError(motion, tuple(drawn), gains, added, tuple(unsure), told, kept)
 
 
-def _runs(plant: Plant, time: FloatArray, angles: Iterator[FloatArray]) -> Iterator[LoadMotion]:
-    """What a plant makes of motions, (n,) each [rad], but for those that cannot be followed."""
-    while some := list(islice(angles, AT_ONCE)):
-        for motion in motor_motions(time, np.column_stack(some)):
+def _made_of(
+    plant: Plant, angle: FloatArray, moved: Iterator[FloatArray], sample_time: float
+) -> Iterator[dict[str, FloatArray]]:
+    """Channel to what a plant makes of parts of a motion beside the rest, (n,) each, but those it cannot follow.
+
+    In the steps of a simulation, up to `GRID`: what they may be counts, in the band, and not to the last digit.
+
+    Args:
+        plant: that answers.
+        angle: of the motor, as expected, (n,) [rad].
+        moved: parts of it that may not be, (n,) each [rad].
+        sample_time: of the rows [s].
+    """
+    every = max(1, int(GRID / sample_time + 1e-6))
+    time: FloatArray = np.arange(step_count(len(angle), every), dtype=np.float64) * (every * sample_time)
+
+    def thinned(part: FloatArray) -> FloatArray:
+        return at_steps(part, every) if every > 1 else part
+
+    slow: FloatArray = thinned(angle)
+    alone = simulate_driven(plant, motor_motion(time, slow))
+    while some := [thinned(part) for part in islice(moved, AT_ONCE)]:
+        for motion in motor_motions(time, (slow + np.vstack(some)).T):
             try:
-                yield simulate_driven(plant, motion)
+                run = simulate_driven(plant, motion)
             except SimulationError:
                 continue
+            made = {name: _answer(run, name) - _answer(alone, name) for name in ("motor_torque", "table_position")}
+            yield {name: at_rows(one, every, len(angle)) if every > 1 else one for name, one in made.items()}
 
 
 def known_motion_of(angle: FloatArray, step: float, sample_time: float) -> FloatArray:

@@ -37,7 +37,6 @@ from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.diagnosis.motion.prediction import AxisPredictor
-from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
@@ -229,10 +228,7 @@ def clocks(problem: Problem, plant: Plant, evidence: AxisEvidence) -> list[Fault
         recording = evidence.recording
         step = recording.sample_time / clock
         corrected = replace(recording, time=recording.time / clock, sample_time=step)
-        try:
-            again = prepare(corrected, plant, 1.0)
-        except InputError:
-            continue
+        again = evidence.at_other_times(corrected)
         seen = torque_parts(replace(problem, predictor=AxisPredictor()), plant, again)
         if seen is not None:
             g = seen.factor if evidence.scaled_from else 1.0
