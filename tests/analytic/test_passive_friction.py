@@ -12,7 +12,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.judging.veto import friction_that_pushes
+from feeddrive.diagnosis.judging.asked_of_fit import friction_that_pushes
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.prediction import AxisPredictor

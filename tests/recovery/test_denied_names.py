@@ -16,9 +16,10 @@ from feeddrive.diagnosis.finding.attempt import refuse_at_an_end
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging import judge as judge_of
 from feeddrive.diagnosis.judging import veto
+from feeddrive.diagnosis.judging.asked_of_fit import ends_reached
 from feeddrive.diagnosis.judging.denied_again import settled_names
 from feeddrive.diagnosis.judging.judge import Judged, Share, prepared_for_judging, share_of
-from feeddrive.diagnosis.judging.veto import ends_reached, not_worse_than_declared, without_denied, worse_by
+from feeddrive.diagnosis.judging.veto import not_worse_than_declared, without_denied, worse_by
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.evidence import UNSEEN, Evidence

@@ -15,7 +15,7 @@ from feeddrive.diagnosis.certainty.inclusion import OPEN, _members_at_rest
 from feeddrive.diagnosis.finding.refitting import with_value_back, with_value_from_declared
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import members_weighed
-from feeddrive.diagnosis.judging.veto import values_within_tolerance
+from feeddrive.diagnosis.judging.asked_of_fit import values_within_tolerance
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.base import Port

@@ -10,7 +10,7 @@ import pytest
 from feeddrive.diagnosis.certainty.one_sided import all_intervals
 from feeddrive.diagnosis.certainty.profile import profiled
 from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
-from feeddrive.diagnosis.judging.veto import sizes_around_none
+from feeddrive.diagnosis.judging.asked_of_fit import sizes_around_none
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.preparation import prepared

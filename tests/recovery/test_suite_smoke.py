@@ -21,7 +21,14 @@ CASES = {next(iter(case.planted)): case for case in smoke_cases()}
 KNOWN_MISSES: dict[str, str] = {}
 """Effect to why it is not named at this size. A strict list: an effect that is named comes off it."""
 
-FAST = ("friction_deviation", "torque_ripple", "lead_error_periodic", "presliding", "viscosity_temperature", "heat_sink")
+FAST = (
+    "friction_deviation",
+    "torque_ripple",
+    "lead_error_periodic",
+    "presliding",
+    "viscosity_temperature",
+    "heat_sink",
+)
 """At the guides, the motor, the screw's lead, a contact; and two of heat: each takes some ten seconds."""
 
 

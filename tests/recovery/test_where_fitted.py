@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.certainty.uncertainty import certainty, certainty_along
+from feeddrive.diagnosis.judging.asked_of_fit import sizes_around_none
 from feeddrive.diagnosis.judging.judge import Judged, prepared_for_judging
-from feeddrive.diagnosis.judging.veto import sizes_around_none
 from feeddrive.diagnosis.judging.where_fitted import share_where_fitted, where_fitted
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
