@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,20 +18,25 @@ from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.result import Diagnosis, Trial
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_record
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.suspicion import suspects
-from feeddrive.diagnosis.suspicion.logged_rows import rhythm
+from feeddrive.diagnosis.suspicion.logged_rows import rhythm, with_recorder_that_holds
 from feeddrive.diagnosis.suspicion.quality import Quality
 from feeddrive.diagnosis.suspicion.suspects import DRIFT, GAIN, Suspect, is_worth_a_search, suspected
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.recording import Recording
+from feeddrive.recording import Recording, read_recording
+from tests.recovery.fleet.case import case
 from tests.recovery.rigid_runs import NOISE, PLANT, Truth, rigid_run
 
 KEYS = "mass|coulomb|smoothing_velocity|viscous"
 EXACT = re.sub(rf'^({KEYS}) = (".*")$', r'\1 = { value = \2, source = "simulated" }', PLANT, flags=re.M)
+
+HELD = 700_760
+"""A machine of 1690 kg with 12 bits, nothing planted, whose recorder writes the torque every tenth row."""
 
 STEP = 1e-3
 """Time between rows [s]: clearly that of a servo loop, be the clock some per cent off."""
@@ -127,6 +133,19 @@ def test_a_torque_that_the_recorder_repeats(rigid: Plant, seed: int) -> None:
     result, effects = diagnose(rigid, spoilt[:1], spoilt[1:])
     assert (result.effects, effects) == ((), ())
     assert {(one.kind, round(one.value / STEP)) for one in result.quality} == {("channel_hold", every)}
+
+
+def test_a_repeated_torque_beside_an_encoder_whose_steps_show(tmp_path: Path) -> None:
+    """What the steps make of the torque beyond the band is no torque, and is not to fold into every tenth row."""
+    drawn = case(HELD)
+    path, recording, _ = drawn.write(tmp_path)
+    problem, _, _ = prepared(read_plant(path), [read_recording(recording)], [], 1.0)
+    (evidence,) = problem.evidence
+    assert isinstance(evidence, AxisEvidence) and "motor_torque" in evidence.gains
+    held, _, (quality,) = with_recorder_that_holds(problem, [])
+    assert quality.kind == "channel_hold" and quality.value == pytest.approx(10e-3)
+    # noise, and what the steps leave in the band, by which it is weighed; folded, they left 3.4
+    assert held.plain_error(()) < 1.3
 
 
 def test_a_machine_that_lacks_something_is_not_taken_for_a_recorder(rigid: Plant) -> None:

@@ -71,7 +71,10 @@ class AxisPredictor(Predictor[AxisEvidence]):
         at_motor = self._turning(plant, motion) + self._motor_sources(plant, motion)
         torque = _asked(plant, evidence, run.torque_at(motion) + at_motor)
         step = evidence.recording.sample_time
-        if evidence.torque_rows is not None:  # the drive's own row begins half a row before what it acts about
+        if evidence.torque_rows is not None:
+            if "motor_torque" in evidence.gains:  # what the encoder's steps make beyond the band would fold into it
+                torque = evidence.band.filter(torque)
+            # the drive's own row begins half a row before what it acts about
             torque = repeated(lagging(torque, -0.5 * step, step), evidence.torque_rows)
         raw = {"motor_torque": torque, "table_position": run.table_at(motion, plant.chain.motor_radius)}
         series = {name: evidence.band.filter(raw[name]) for name in evidence.channels}
