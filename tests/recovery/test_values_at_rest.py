@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated
+from feeddrive.diagnosis.calibration.calibration import whitener
 from feeddrive.diagnosis.calibration.together import cost, stepped_together
 from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes
 from feeddrive.diagnosis.finding import search as searching
@@ -15,8 +17,12 @@ from feeddrive.diagnosis.finding.refitting import at_rest
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.source.torque_ripple import TorqueRipple
+from tests.recovery.fleet.problem import calibrated_case
 from tests.recovery.rigid_runs import Truth
 from tests.recovery.test_value_asked_once import begun
+
+STIFFER = 700_773
+"""A machine of 596 kg whose axial spring is 1.3 times the declared one, shaken up to its resonance."""
 
 
 @pytest.mark.parametrize("away", [-3.0, 3.0])
@@ -68,3 +74,32 @@ def test_tolerances_are_asked_of_values_at_rest(tmp_path: Path, monkeypatch: pyt
             cost(problem, found.effects, variance) - cost(there.settled(then.effects), then.effects, variance)
             < variance
         )
+
+
+def test_a_step_doubles_no_value(tmp_path: Path) -> None:
+    """Slopes of where a value stands say nothing of twenty times it: the torsional spring had run there and stayed."""
+    problem = calibrated_case(STIFFER, tmp_path)
+    known = problem.calibration
+    assert known is not None
+    at = {value.key: math.exp(value.deviation * c) for value, c in zip(known.values, known.coordinates, strict=True)}
+    # 1.3 times the declared, by what is planted; of the other spring little is seen
+    assert at["axial_stiffness"] == pytest.approx(1.3, rel=0.03)
+    assert at["torsional_stiffness"] == pytest.approx(1.0, abs=0.1)
+    assert problem.plain_error(()) < 1.3
+
+
+def test_values_that_end_at_their_ends_leave_the_others_most_likely() -> None:
+    random = np.random.default_rng(4)
+    columns, residual = random.standard_normal((40, 3)), 3.0 * random.standard_normal(40)
+    weighed = whitener(columns, np.array([0.3, -0.2, 0.1]), 2.0)
+    free = weighed.most_likely(residual)
+    assert weighed.most_likely_within(residual, free - 1, free + 1) == pytest.approx(free)
+    high = free + np.array([-0.5, 1.0, 1.0])  # the first would be beyond its end
+    found = weighed.most_likely_within(residual, free - 9, high)
+    assert found[0] == high[0]
+
+    def cost(c: np.ndarray) -> float:
+        left = residual + weighed.offset - columns @ c
+        return float(left @ left) + 2.0 * float(c @ c)
+
+    assert all(cost(found) < cost(found + way * step) for way in (-1, 1) for step in 1e-3 * np.eye(3)[1:])

@@ -90,6 +90,21 @@ class Whitener:
         found: FloatArray = np.asarray(solved, dtype=np.float64)
         return found
 
+    def most_likely_within(self, residual: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+        """ĉ with no value beyond its ends, (k,) each: one that would be ends there, and the others are solved anew."""
+        normal: FloatArray = self.columns.T @ self.columns + self.variance * np.eye(self.columns.shape[1])
+        wanted = self.columns.T @ (residual + self.offset)
+        found, free = np.zeros(len(wanted)), np.ones(len(wanted), dtype=bool)
+        while free.any():
+            held = normal[np.ix_(free, ~free)] @ found[~free]
+            found[free] = np.linalg.solve(normal[np.ix_(free, free)], wanted[free] - held)
+            outside = free & ((found < low) | (found > high))
+            if not outside.any():
+                break
+            found[outside] = np.clip(found, low, high)[outside]
+            free &= ~outside
+        return found
+
     def at(self, coordinates: FloatArray, variance: float) -> Whitener:
         """W of the same slopes with other c0, (k,), and λ."""
         return _whitener(self.columns, self.basis, self.sizes, coordinates, variance)

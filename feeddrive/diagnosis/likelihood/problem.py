@@ -31,6 +31,10 @@ LEVEL = 0.8
 """Residual over the noise that a channel is stated to have, below which the noise is put right: a level read from
 the quietest tenth of the blocks is known to some per cent."""
 
+LONGEST = math.log(2.0)
+"""Logarithm of a declared value by which one step moves it at most: a factor of two. What gives way falls as exp(-x)
+and slopes tell 1 - x: of a stiffness doubled half is left and 0.31 told, and beyond 2.7 times less than nothing."""
+
 UNEXPLAINED = 1.3
 """Weighted squared error per sample beyond which much is left; noise alone gives one."""
 
@@ -233,10 +237,11 @@ class Problem:
     def stepped(self, effects: Sequence[Effect], residual: FloatArray) -> Problem:
         """The problem at the most likely declared values, or as far towards them as the error falls.
 
-        Where the straight step takes less than half of what its slopes promise, what its tenth bends the prediction by
-        is fitted as well, and the values go along c + s d + s^2 a: values that stand in for each other, an inertia, a
-        mass and a torque constant, lie in a narrow valley, straight for some of them in the values and for others in
-        their logarithms. Source: Transtrum and Sethna, arXiv:1201.5885 (2012), section 3.
+        No value grows or falls by more than `LONGEST`. Where the straight step takes less than half of what its slopes
+        promise, what its tenth bends the prediction by is fitted as well, and the values go along c + s d + s^2 a:
+        values that stand in for each other, an inertia, a mass and a torque constant, lie in a narrow valley, straight
+        for some of them in the values and for others in their logarithms. Source: Transtrum and Sethna,
+        arXiv:1201.5885 (2012), section 3.
 
         Args:
             effects: beside them.
@@ -245,7 +250,9 @@ class Problem:
         known, slopes = self.calibration, self.whitener
         if known is None or slopes is None or not np.all(np.isfinite(residual)):
             return self
-        step = slopes.most_likely(residual) - known.coordinates
+        longest = LONGEST / np.array([value.deviation for value in known.values])
+        ends = known.coordinates - longest, known.coordinates + longest
+        step = slopes.most_likely_within(residual, *ends) - known.coordinates
         possible = self.possible(effects)
 
         def at(share: float, bend: FloatArray) -> tuple[float, Problem, FloatArray]:

@@ -228,7 +228,7 @@ def clocks(problem: Problem, plant: Plant, evidence: AxisEvidence) -> list[Fault
         recording = evidence.recording
         step = recording.sample_time / clock
         corrected = replace(recording, time=recording.time / clock, sample_time=step)
-        again = evidence.at_other_times(corrected)
+        again = replace(evidence.at_other_times(corrected), scaled_from="")  # g is its scale
         seen = torque_parts(replace(problem, predictor=AxisPredictor()), plant, again)
         if seen is not None:
             g = seen.factor if evidence.scaled_from else 1.0
