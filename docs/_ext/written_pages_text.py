@@ -7,6 +7,7 @@ import os
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from unittest.mock import patch
 
 import feeddrive as fd
 from feeddrive.cli.main import COMMANDS, load
@@ -31,7 +32,6 @@ FURTHER = "Further names"
 
 def commands_page() -> str:
     """Every command with its `--help`."""
-    os.environ["COLUMNS"] = str(HELP_WIDTH)
     parts = [
         "# Commands\n",
         "A command ends with status 0, or with 2 and one line: what is wrong, where, and the remedy. `--json` prints "
@@ -39,7 +39,8 @@ def commands_page() -> str:
     ]
     for name, entry in COMMANDS.items():
         command = load(name)
-        with command.make_context(name, [], resilient_parsing=True) as context:
+        width = patch.dict(os.environ, COLUMNS=str(HELP_WIDTH))  # no longer than for this: other output has its own
+        with width, command.make_context(name, [], resilient_parsing=True) as context:
             context.info_name = f"feeddrive {name}"
             context.terminal_width = context.max_content_width = HELP_WIDTH
             text = command.get_help(context)
