@@ -18,6 +18,7 @@ from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.result import Diagnosis, Trial
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_record
+from feeddrive.diagnosis.likelihood.problem import LEVEL
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.suspicion import suspects
@@ -26,6 +27,7 @@ from feeddrive.diagnosis.suspicion.quality import Quality
 from feeddrive.diagnosis.suspicion.suspects import DRIFT, GAIN, Suspect, is_worth_a_search, suspected
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.friction.stribeck import Stribeck
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording, read_recording
@@ -207,6 +209,18 @@ def test_a_fault_must_leave_as_little_as_the_one_effect_does_where_the_search_en
     fault = Suspect(GAIN, 0.1)
     assert not is_worth_a_search(fault, mended, found)
     assert is_worth_a_search(fault, mended, replace(begun, fit=fit(begun.problem, begun.fit.effects)))
+
+
+def test_a_fault_of_one_value_is_not_searched_beside_one_effect_of_one_value_where_noise_is_left(rigid: Plant) -> None:
+    """Nobody tells the two apart; with two values beside it the fault may spare one, and is searched."""
+    run, _ = runs(37, Truth())
+    fault = Suspect(GAIN, 0.01)
+    for effects, worth in (([Payload.of(mass=0.0)], False), ([Stribeck.of(delta_force=0.5, velocity=0.05)], True)):
+        ended = searched(rigid, run, *effects)
+        found = replace(ended, fit=fit(ended.problem, effects))
+        mended, _, _ = prepared(rigid, [run], [run], 0.75)
+        assert mended.plain_error(()) < 1 / LEVEL**2  # the recording holds nothing but noise
+        assert is_worth_a_search(fault, mended, found) is worth
 
 
 def test_an_offset_and_a_constant_force_are_said_together(rigid: Plant) -> None:

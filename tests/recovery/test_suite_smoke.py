@@ -1,7 +1,6 @@
 """One case of the recovery suite for every effect, at the size that is worth half of the error: named, and error gone.
 
-All of them run by `make recovery-smoke`, and those of `FAST` with the other tests: one for every place that an effect
-can have. The whole suite is `make recovery`.
+All of them run by `make recovery-smoke`, and those of `FAST` with the other tests. The whole suite is `make recovery`.
 """
 
 from __future__ import annotations
@@ -29,7 +28,8 @@ FAST = (
     "viscosity_temperature",
     "heat_sink",
 )
-"""At the guides, the motor, the screw's lead, a contact; and two of heat: each takes some ten seconds."""
+"""A friction, a source at the motor, the screw's lead, a contact, a film and a sink of heat: some ten seconds each.
+Free play, and nothing planted, are among the fast cases of `test_planted_effects`."""
 
 
 def parameter(name: str) -> Any:

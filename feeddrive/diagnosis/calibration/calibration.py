@@ -83,15 +83,13 @@ class Whitener:
         found: FloatArray = np.sqrt(np.maximum(rest, 0.0) + np.sum((along / self.kept[:, None]) ** 2, axis=0))
         return found
 
-    def most_likely(self, residual: FloatArray) -> FloatArray:
-        """ĉ for y - f, (m,)."""
-        normal: FloatArray = self.columns.T @ self.columns + self.variance * np.eye(self.columns.shape[1])
-        solved = np.linalg.solve(normal, self.columns.T @ (residual + self.offset))
-        found: FloatArray = np.asarray(solved, dtype=np.float64)
-        return found
+    def most_likely(
+        self, residual: FloatArray, low: FloatArray | float = -np.inf, high: FloatArray | float = np.inf
+    ) -> FloatArray:
+        """ĉ for y - f, (m,), with no value beyond its ends, (k,) each: one that would be ends there.
 
-    def most_likely_within(self, residual: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
-        """ĉ with no value beyond its ends, (k,) each: one that would be ends there, and the others are solved anew."""
+        The others are then solved for again.
+        """
         normal: FloatArray = self.columns.T @ self.columns + self.variance * np.eye(self.columns.shape[1])
         wanted = self.columns.T @ (residual + self.offset)
         found, free = np.zeros(len(wanted)), np.ones(len(wanted), dtype=bool)

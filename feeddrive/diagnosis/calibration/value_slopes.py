@@ -122,6 +122,7 @@ def slopes_of(
     bounces = has_play(effects) and evidence.lost is not None
     each, alike = np.eye(len(known.values)), np.array([one.scales_with_force / one.deviation for one in known.values])
     smooth, base = problem.predictor.smooth(problem.plant) and not bounces, at(alike, 0.0)
+    # column by column, as they are made and weighed
     slopes = {name: np.empty((len(base[name]), len(known.values)), order="F") for name in evidence.channels}
     sizes = np.zeros(len(known.values))
     if smooth and not rough and known.slopes and problem.whitener is not None:

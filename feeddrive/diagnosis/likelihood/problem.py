@@ -237,7 +237,7 @@ class Problem:
     def stepped(self, effects: Sequence[Effect], residual: FloatArray) -> Problem:
         """The problem at the most likely declared values, or as far towards them as the error falls.
 
-        No value grows or falls by more than `LONGEST`. Where the straight step takes less than half of what its slopes
+        The straight step moves no value by more than `LONGEST`. Where it takes less than half of what its slopes
         promise, what its tenth bends the prediction by is fitted as well, and the values go along c + s d + s^2 a:
         values that stand in for each other, an inertia, a mass and a torque constant, lie in a narrow valley, straight
         for some of them in the values and for others in their logarithms. Source: Transtrum and Sethna,
@@ -252,7 +252,7 @@ class Problem:
             return self
         longest = LONGEST / np.array([value.deviation for value in known.values])
         ends = known.coordinates - longest, known.coordinates + longest
-        step = slopes.most_likely_within(residual, *ends) - known.coordinates
+        step = slopes.most_likely(residual, *ends) - known.coordinates
         possible = self.possible(effects)
 
         def at(share: float, bend: FloatArray) -> tuple[float, Problem, FloatArray]:

@@ -217,7 +217,10 @@ def _made_of(
         return at_steps(part, every) if every > 1 else part
 
     slow: FloatArray = thinned(angle)
-    alone = simulate_driven(plant, motor_motion(time, slow))
+    try:
+        alone = simulate_driven(plant, motor_motion(time, slow))
+    except SimulationError:
+        return
     while some := [thinned(part) for part in islice(moved, AT_ONCE)]:
         for motion in motor_motions(time, (slow + np.vstack(some)).T):
             try:
