@@ -84,6 +84,11 @@ class CalibratedValue:
         """1 where the value is a force, or a force per something, 0 where it is none: a width is a velocity."""
         return 0.0 if self.key.endswith(_WIDTH) else 1.0
 
+    @property
+    def farthest(self) -> float:
+        """Coordinate of the largest factor; its negative is that of the smallest."""
+        return FARTHEST / self.deviation
+
     def factor(self, coordinate: float) -> float:
         """Value over declared at a coordinate."""
         factor = math.exp(min(max(self.deviation * coordinate, -FARTHEST), FARTHEST))

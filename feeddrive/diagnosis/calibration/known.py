@@ -86,7 +86,7 @@ class Known:
         """c at that coordinate; the farthest where no machine has it."""
         power, deviation = _power(self.values[place]), self.values[place].deviation
         grown = 1 + power * deviation * (u - float(self.at[place]))
-        far = FARTHEST / deviation
+        far = self.values[place].farthest
         if grown <= math.exp(-2 * FARTHEST):
             return -power * far
         return min(max(float(self.at[place]) + math.log(grown) / power / deviation, -far), far)

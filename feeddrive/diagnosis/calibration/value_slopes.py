@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from feeddrive.diagnosis.calibration.declared import CalibratedValue
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.predictability import has_play
@@ -84,6 +85,11 @@ def with_new_slopes(problem: Problem, effects: Sequence[Effect], rough: bool = F
     return replace(problem, calibration=replace(problem.calibration, slopes=slopes, number_slopes=more, taken=taken))
 
 
+def _inwards(value: CalibratedValue, coordinate: float, step: float) -> float:
+    """A step from a coordinate, turned around where it leads beyond the factor that the value may have."""
+    return step if abs(coordinate + step) <= value.farthest else -step
+
+
 def _number_slopes(problem: Problem, effects: Sequence[Effect]) -> FloatArray:
     """Slope of the measured numbers with the coordinates of the declared values, over their deviations, (n, k)."""
     known, rows = problem.calibration, replace(problem.numbers, weight=1.0)
@@ -92,7 +98,7 @@ def _number_slopes(problem: Problem, effects: Sequence[Effect]) -> FloatArray:
         return np.zeros((0, len(known.values)))
     base, columns = rows.predicted(problem.machine(effects)), []
     for i, value in enumerate(known.values):
-        step = STEP / value.deviation
+        step = _inwards(value, known.coordinates[i], STEP / value.deviation)
         coordinates = known.coordinates.copy()
         coordinates[i] += step
         there = replace(problem, calibration=replace(known, coordinates=coordinates)).machine(effects)
@@ -109,7 +115,8 @@ def slopes_of(
     two values are alike, fits along it end where the slopes are wrong, not where the values are right. Masses,
     stiffnesses, dampings, frictions and the torque constant that all grow alike change no prediction where all are
     fitted: beside a free play a long step's secants, some per cent off, would tell of what no recording tells. What
-    they do together is therefore taken from one step of all of them, and the slopes agree with it.
+    they do together is therefore taken from one step of all of them, and the slopes agree with it. No step leads
+    beyond the factor that a value may have: there it would tell nothing.
     """
     known = problem.calibration
     assert known is not None
@@ -121,6 +128,9 @@ def slopes_of(
 
     bounces = has_play(effects) and evidence.lost is not None
     each, alike = np.eye(len(known.values)), np.array([one.scales_with_force / one.deviation for one in known.values])
+    for i, value in enumerate(known.values):
+        ahead, back = (_inwards(value, float(known.coordinates[i]), way * LONG / value.deviation) for way in (1, -1))
+        alike[i] *= ahead != back  # one at its end does not grow with the others
     smooth, base = problem.predictor.smooth(problem.plant) and not bounces, at(alike, 0.0)
     # column by column, as they are made and weighed
     slopes = {name: np.empty((len(base[name]), len(known.values)), order="F") for name in evidence.channels}
@@ -130,9 +140,10 @@ def slopes_of(
     for i, value in enumerate(known.values):
         step = (STEP if smooth else LONG) / value.deviation
         step = max(min(step, SHORT / sizes[i]), SHORTEST / value.deviation) if sizes[i] > 0 else step
-        after, before, apart = at(each[i], step), base, step
-        if not smooth and not rough:
-            before, apart = at(each[i], -step), 2 * step
+        ahead, back = (_inwards(value, float(known.coordinates[i]), one) for one in (step, -step))
+        after, before, apart = at(each[i], ahead), base, ahead
+        if not smooth and not rough and back != ahead:
+            before, apart = at(each[i], back), ahead - back
         for name in evidence.channels:
             slopes[name][:, i] = (after[name] - before[name]) / apart
     if smooth:

@@ -237,11 +237,11 @@ class Problem:
     def stepped(self, effects: Sequence[Effect], residual: FloatArray) -> Problem:
         """The problem at the most likely declared values, or as far towards them as the error falls.
 
-        The straight step moves no value by more than `LONGEST`. Where it takes less than half of what its slopes
-        promise, what its tenth bends the prediction by is fitted as well, and the values go along c + s d + s^2 a:
-        values that stand in for each other, an inertia, a mass and a torque constant, lie in a narrow valley, straight
-        for some of them in the values and for others in their logarithms. Source: Transtrum and Sethna,
-        arXiv:1201.5885 (2012), section 3.
+        No value goes beyond the factor that it may have, and the straight step moves none by more than `LONGEST`. Where
+        it takes less than half of what its slopes promise, what its tenth bends the prediction by is fitted as well,
+        and the values go along c + s d + s^2 a: values that stand in for each other, an inertia, a mass and a torque
+        constant, lie in a narrow valley, straight for some of them in the values and for others in their logarithms.
+        Source: Transtrum and Sethna, arXiv:1201.5885 (2012), section 3.
 
         Args:
             effects: beside them.
@@ -251,12 +251,14 @@ class Problem:
         if known is None or slopes is None or not np.all(np.isfinite(residual)):
             return self
         longest = LONGEST / np.array([value.deviation for value in known.values])
-        ends = known.coordinates - longest, known.coordinates + longest
-        step = slopes.most_likely(residual, *ends) - known.coordinates
+        farthest = np.array([value.farthest for value in known.values])
+        low = np.maximum(known.coordinates - longest, -farthest)
+        high = np.minimum(known.coordinates + longest, farthest)
+        step = slopes.most_likely(residual, low, high) - known.coordinates
         possible = self.possible(effects)
 
         def at(share: float, bend: FloatArray) -> tuple[float, Problem, FloatArray]:
-            coordinates = known.coordinates + share * step + share**2 * bend
+            coordinates = np.clip(known.coordinates + share * step + share**2 * bend, -farthest, farthest)
             there = self.at_values(coordinates)
             if possible and not there.possible(effects):  # friction that an effect takes more than all of
                 return math.inf, there, residual
