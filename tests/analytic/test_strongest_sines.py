@@ -53,6 +53,42 @@ def test_error_of_every_revolution_is_found_on_a_stroke_of_a_few() -> None:
     assert all(one.order > 1.6 for one in strongest_sines(few, residual, speed / 3, EDGE))
 
 
+def test_order_that_shows_at_the_ends_of_the_travel_alone_is_found_among_its_fringes() -> None:
+    # to and fro over a hundred turns, slow enough for order 12 on the first and the last two and a few in between
+    places = np.concatenate(
+        [np.linspace(36.6, 38.6, 4000), np.linspace(70.0, 70.6, 300), np.linspace(145.0, 147.5, 5000)]
+    )
+    rapids = np.linspace(38.6, 145.0, 3000)
+    angle = 2 * np.pi * np.concatenate([places, rapids])
+    speed = 2 * np.pi * np.concatenate([np.full(len(places), 2.0), np.full(len(rapids), 39.0)])
+    noise = np.random.default_rng(8).standard_normal(len(angle))
+    slow = speed < 100.0
+    residual = (
+        np.where(slow, 0.5 * np.sin(12 * angle + 0.4) + 0.2 * np.sin(24 * angle), 0.0) + 0.002 * angle + 0.1 * noise
+    )
+    (first, *others) = strongest_sines(angle, residual, speed, EDGE)
+    # tapered to the middle of the travel, its fringes 0.144 beside it took more
+    assert first.order == pytest.approx(12.0, abs=0.3 / 110)  # of one turn over the travel
+    assert first.amplitude == pytest.approx(0.5, rel=0.1)
+    assert all(abs(one.order - 12.0) > 0.5 / 110.9 for one in others)
+
+
+@pytest.mark.parametrize("pitch", [2.66, 4.5])
+def test_force_over_some_turns_is_found_on_a_stroke_of_a_few_pitches(pitch: float) -> None:
+    # ten revolutions to and fro, forty turns from zero, beside a spring and a ripple of the motor
+    angle = 2 * np.pi * (40 + 10 * (0.5 - 0.5 * np.cos(2 * np.pi * STEP * np.arange(9000) / 4.0)))
+    noise = np.random.default_rng(7).standard_normal(len(angle))
+    residual = 0.5 * np.sin(angle / pitch + 0.7) + 0.3 * np.sin(6 * angle) + 0.02 * angle + noise
+    speed = np.gradient(angle, STEP)
+    nearest = min(
+        strongest_sines(angle, residual, speed, EDGE, longest=np.inf), key=lambda one: abs(one.order - 1 / pitch)
+    )
+    assert nearest.order == pytest.approx(1 / pitch, abs=0.1 / 8)  # an eighth of what ten revolutions resolve
+    assert nearest.amplitude == pytest.approx(0.5, rel=0.15)
+    # of a lead it is a curve along the stroke
+    assert all(one.order > 0.45 for one in strongest_sines(angle, residual, speed, EDGE))
+
+
 def test_nothing_moves_and_nothing_is_left() -> None:
     rest = np.zeros(500)
     assert strongest_sines(rest, np.ones(500), rest, EDGE) == []

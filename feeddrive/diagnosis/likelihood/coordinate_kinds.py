@@ -53,20 +53,27 @@ class Logarithmic:
 
 @dataclass(frozen=True)
 class Sine:
-    """amplitude and phase as the two components of the sine."""
+    """amplitude and phase as the two components of the sine at an angle m of its shaft, in the middle of the stroke.
+
+    phase at m = phase + order m. A stroke of some turns that lies forty turns from zero tells that phase; that at zero
+    goes by 2 pi 40 with the order, and a step along its components leads out of where their slopes hold.
+    """
 
     size: float
+    middle: float
 
     def read(self, effect: Effect) -> list[float]:
         """Coordinates of the effect's values."""
-        amplitude, phase = number(effect.values["amplitude"]), number(effect.values["phase"])
+        values = effect.values
+        amplitude, phase = number(values["amplitude"]), number(values["phase"]) + number(values["order"]) * self.middle
         return [amplitude * math.cos(phase) / self.size, amplitude * math.sin(phase) / self.size]
 
     def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
-        """Values of the coordinates."""
+        """Values of the coordinates, the order being that of the effect."""
         a, b = coordinates
         most = effect.parameter("amplitude").maximum
-        return {"amplitude": min(self.size * math.hypot(a, b), most), "phase": math.atan2(b, a)}
+        phase = math.atan2(b, a) - number(effect.values["order"]) * self.middle
+        return {"amplitude": min(self.size * math.hypot(a, b), most), "phase": math.remainder(phase, math.tau)}
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from feeddrive.diagnosis.likelihood.coordinate_kinds import (
     Sine,
     TwoHeats,
 )
-from feeddrive.effects.base import Effect
+from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.effects.source.position_spring import PositionSpring
@@ -92,7 +92,9 @@ LEFT = 0.05
 def coordinates_of(effect: Effect, plant: Plant) -> list[Coordinate]:
     """The coordinates in which the effect is fitted, for the form that its values choose."""
     if {"amplitude", "phase"} <= set(effect.values):
-        return [Sine(effect.parameter("amplitude").size), Linear("order", ORDER_SIZE)]
+        travel = plant.chain.motor_radius if effect.port is Port.MOTOR else plant.chain.radius
+        # the order comes first: what the components say of the phase goes with it
+        return [Linear("order", ORDER_SIZE), Sine(effect.parameter("amplitude").size, plant.middle / travel)]
     if effect.name in TWO_HEATS:
         return [TWO_HEATS[effect.name]]
     if isinstance(effect, PositionSpring):

@@ -29,7 +29,8 @@ SKIRT = math.sqrt(2)
 ripple of a drive stands far above its noise."""
 
 LONGEST_PERIOD = 2.0
-"""Revolutions of the longest period that is looked for beside a line: a longer one is a curve along the stroke."""
+"""Revolutions of the longest period of a lead that is looked for beside a line: a longer one is a curve along the
+stroke, which the lead map takes. A force over some turns has no map."""
 
 OVERSAMPLING = 8
 """Zero padding, so that a peak is met to an eighth of the resolution."""
@@ -121,8 +122,9 @@ def bump_of(curve: PositionCurve, count: int = 3) -> list[tuple[float, float, fl
 
 
 def strongest_orders(
-    angle: FloatArray, residual: FloatArray, highest: float = BINS_PER_TURN / 4, count: int = 3, lowest: float = 0.0
-) -> list[float]:
+    angle: FloatArray, residual: FloatArray, highest: float = BINS_PER_TURN / 4, count: int = 3, lowest: float = 0.0,
+    tapered: bool = True,
+) -> list[float]:  # fmt: skip
     """Orders per revolution of the sines that take most of a residual, by least squares beside a mean.
 
     The residual is averaged per angle bin first, so that rests and slow strokes do not weigh by their duration. Bins
@@ -136,6 +138,7 @@ def strongest_orders(
         highest: order up to which peaks count.
         count: how many.
         lowest: order from which peaks count.
+        tapered: whether bins weigh less towards the ends of the travel; else every bin that was met weighs alike.
 
     Returns:
         Orders, the strongest first; empty if the angle covers less than two revolutions.
@@ -148,7 +151,7 @@ def strongest_orders(
         return []
     samples = np.bincount(bins, minlength=size)
     mean = np.bincount(bins, weights=residual, minlength=size) / np.maximum(samples, 1)
-    weight = np.where(samples > 0, np.hanning(size + 2)[1:-1], 0.0)
+    weight = np.where(samples > 0, np.hanning(size + 2)[1:-1] if tapered else 1.0, 0.0)
     share = _shares_of_sines(mean, weight / weight.sum())
     orders = np.arange(len(share)) * BINS_PER_TURN / (OVERSAMPLING * size)
     allowed = (orders > max(lowest, LEAST_PERIODS / turns)) & (orders < min(highest, BINS_PER_TURN / 4))
@@ -201,8 +204,9 @@ class Sine:
 
 
 def strongest_sines(
-    angle: FloatArray, residual: FloatArray, speed: FloatArray, edge: float, count: int = 3
-) -> list[Sine]:
+    angle: FloatArray, residual: FloatArray, speed: FloatArray, edge: float, count: int = 3,
+    longest: float = LONGEST_PERIOD,
+) -> list[Sine]:  # fmt: skip
     """Sines that take most of a residual, each looked for at the samples at which it is in the band.
 
     An order n shows where n |speed| is below the edge, or little above: a high one at low speed alone, where the fast
@@ -216,6 +220,7 @@ def strongest_sines(
         speed: rate of the angle, (n,) [rad/s].
         edge: of the band [Hz].
         count: how many.
+        longest: period in revolutions up to which one of few periods in the travel is looked for.
 
     Returns:
         Sines, the one that takes most first.
@@ -224,33 +229,54 @@ def strongest_sines(
     if fastest == 0.0 or square == 0.0:
         return []
     seen = 2 * np.pi * SKIRT * edge
-    found, lowest, highest = _longest_sine(angle, residual), 0.0, seen / fastest
+    found, lowest, highest = _longest_sine(angle, residual, longest), 0.0, seen / fastest
     while lowest < BINS_PER_TURN / 4:
         slow = np.abs(speed) * highest <= seen * (1 + 1e-9)
         if not slow.any():
             break
         there, left = angle[slow], residual[slow]
-        for order in strongest_orders(there, left, highest, count, lowest):
-            columns = np.column_stack([np.sin(order * there), np.cos(order * there), np.ones(len(there))])
+        line = np.column_stack([np.ones(len(there)), there - np.mean(there)])
+        by_line, straight = _taken(line, left)
+        bent = left - line @ straight
+        # slow at the ends of the travel alone: orders stand in fringes as fine as the whole of it, which a taper hides
+        orders = [
+            one for taper in (True, False) for one in strongest_orders(there, bent, highest, count, lowest, taper)
+        ]
+        for order in orders:
+            columns = np.column_stack([np.sin(order * there), np.cos(order * there), line])
             # of some slow samples at the reversals a sine of any size passes near, and takes no more than is there
-            (taken, (a, b, _)), (level, _) = _taken(columns, left), _taken(columns[:, 2:], left)
-            found.append(Sine(order, float(np.hypot(a, b)), float(np.arctan2(b, a)), (taken - level) / square))
+            taken, (a, b, *_) = _taken(columns, left)
+            found.append(Sine(order, float(np.hypot(a, b)), float(np.arctan2(b, a)), (taken - by_line) / square))
         lowest, highest = highest, 2 * highest
-    return sorted(found, key=lambda one: -one.share)[:count]
+    best, apart = (
+        list[Sine](),
+        np.pi / max(float(np.ptp(angle)), 1e-12),
+    )  # two orders nearer than half the resolution are one
+    for one in sorted(found, key=lambda one: -one.share):
+        if all(abs(one.order - other.order) > apart for other in best):
+            best.append(one)
+    return best[:count]
 
 
-def _longest_sine(angle: FloatArray, residual: FloatArray) -> list[Sine]:
+def _longest_sine(angle: FloatArray, residual: FloatArray, longest: float) -> list[Sine]:
     """The sine of few periods in the travel that takes most of a residual beside a line; none where there is no room.
 
     On a short stroke the error of every revolution has but some periods, which a periodogram cannot tell from a trend.
     """
     turns = float(np.ptp(angle)) / (2 * np.pi)
-    lowest, highest = max(FEWEST_PERIODS / turns, 1 / LONGEST_PERIOD), LEAST_PERIODS / turns
-    line = np.column_stack([np.ones(len(angle)), angle - np.mean(angle)])
-    square, by_line = float(residual @ residual), _taken(line, residual)[0]
+    lowest, highest = max(FEWEST_PERIODS / turns, 1 / longest), LEAST_PERIODS / turns
+    bins = np.floor((angle - angle.min()) * BINS_PER_TURN / (2 * np.pi)).astype(int)
+    samples = np.bincount(bins)
+    met = samples > 0
+    there = angle.min() + (np.flatnonzero(met) + 0.5) * 2 * np.pi / BINS_PER_TURN
+    root = np.sqrt(samples[met])  # the mean of a bin weighs as its samples do
+    mean = np.bincount(bins, weights=residual)[met] / samples[met] * root
+    line = np.column_stack([np.ones(len(there)), there - np.mean(there)]) * root[:, None]
+    square, by_line = float(residual @ residual), _taken(line, mean)[0]
     best: list[Sine] = []
     for order in np.arange(lowest, highest, 1 / (OVERSAMPLING * turns)):
-        taken, (a, b, *_) = _taken(np.column_stack([np.sin(order * angle), np.cos(order * angle), line]), residual)
+        waves = np.column_stack([np.sin(order * there), np.cos(order * there)]) * root[:, None]
+        taken, (a, b, *_) = _taken(np.column_stack([waves, line]), mean)
         if not best or (taken - by_line) / square > best[0].share:
             share = (taken - by_line) / square
             best = [Sine(float(order), float(np.hypot(a, b)), float(np.arctan2(b, a)), share)]
@@ -258,7 +284,14 @@ def _longest_sine(angle: FloatArray, residual: FloatArray) -> list[Sine]:
 
 
 def _taken(columns: FloatArray, residual: FloatArray) -> tuple[float, FloatArray]:
-    """What columns take of the square of a residual, and their coefficients."""
-    coefficients = np.asarray(np.linalg.lstsq(columns, residual, rcond=None)[0], dtype=np.float64)
+    """What columns take of the square of a residual, and their coefficients.
+
+    By normal equations: a few columns, of which `TOLD` is the least that stands apart.
+    """
+    length = np.sqrt(np.einsum("ij,ij->j", columns, columns))
+    size = np.where(length > 0, length, 1.0)
+    normal = columns.T @ columns / np.outer(size, size)
+    solved = np.linalg.lstsq(normal, columns.T @ residual / size, rcond=TOLD)[0]
+    coefficients = np.asarray(solved / size, dtype=np.float64)
     left = residual - columns @ coefficients
     return float(residual @ residual - left @ left), coefficients

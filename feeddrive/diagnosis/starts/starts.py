@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -100,7 +101,7 @@ def ripple(scene: Scene) -> list[list[Effect]]:
     evidence, run = scene.problem.evidence[at], scene.runs[at]
     rows = evidence.fit_rows
     residual, angle = scene.residuals[at]["motor_torque"][rows], run.motor_angle[rows]
-    sines = strongest_sines(angle, residual, run.motor_speed[rows], evidence.edge)
+    sines = strongest_sines(angle, residual, run.motor_speed[rows], evidence.edge, longest=math.inf)
     sines += _harmonics(scene, TorqueRipple, angle, residual)
     return [[sine(TorqueRipple, one) for one in sines]] if sines else []
 
