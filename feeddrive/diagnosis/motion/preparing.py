@@ -13,6 +13,7 @@ from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence, from_zero, pl
 from feeddrive.diagnosis.motion.band import END_CUT, Band, comparison_band, held, sensor_noise
 from feeddrive.diagnosis.motion.encoder_error import encoder_error
 from feeddrive.diagnosis.motion.flank_rests import flank_rests
+from feeddrive.diagnosis.motion.folded import folded_rows, folded_sentence
 from feeddrive.diagnosis.motion.lead_map import lead_map
 from feeddrive.diagnosis.motion.slow_rows import (
     is_slow,
@@ -130,6 +131,11 @@ def _counted(
         counted &= known
     elif hold is not None:  # the loop is faster than the rows: what it does between them is not known either
         counted &= known_motion(recording, plant, band)
+    else:
+        folded = folded_rows(recording, plant, band)
+        if folded.any():
+            recording = replace(recording, notes=(*recording.notes, folded_sentence(folded, recording)))
+        counted &= ~folded
     counted &= sound_rows(recording, plant.torque_limit, band)
     refuse_little_left(counted, recording)
     return counted, recording
