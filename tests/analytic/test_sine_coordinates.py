@@ -57,7 +57,7 @@ def test_another_order_leaves_the_sine_as_it_is_in_the_middle_of_the_stroke(effe
     plant = axis()
     angle = angles(plant, effect)
     vector = read_coordinates([effect], plant)
-    (other,) = write_coordinates([effect], plant, vector + np.array([1.0, 0.0, 0.0]))
+    (other,) = write_coordinates([effect], plant, vector + np.array([0.0, 0.0, 1.0]))
     assert number(other.values["order"]) == pytest.approx(number(effect.values["order"]) + ORDER_SIZE)
     at = len(angle) // 2
     # rounding of an angle of some hundred rad

@@ -77,6 +77,26 @@ class Sine:
 
 
 @dataclass(frozen=True)
+class Order:
+    """order = size * coordinate, the sine being as it is in the middle of the stroke (`Sine`)."""
+
+    size: float
+    middle: float
+    key: str = "order"
+
+    def read(self, effect: Effect) -> list[float]:
+        """Coordinate of the effect's order."""
+        return [number(effect.values[self.key]) / self.size]
+
+    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
+        """Order of the coordinate, and the phase that it has at an angle of zero."""
+        parameter = effect.parameter(self.key)
+        order = min(max(coordinates[0] * self.size, parameter.minimum), parameter.maximum)
+        turned = (number(effect.values[self.key]) - order) * self.middle
+        return {self.key: order, "phase": math.remainder(number(effect.values["phase"]) + turned, math.tau)}
+
+
+@dataclass(frozen=True)
 class TwoHeats:
     """Two heats that are linear in the prediction, in place of a heat and a share of it.
 
@@ -129,4 +149,4 @@ SOFTEST = 1e-9
 """Stiffness [N/m] of a spring that is a force alone: its zero still is a number."""
 
 
-Coordinate = Linear | Logarithmic | Sine | TwoHeats | MiddleForce
+Coordinate = Linear | Logarithmic | Sine | Order | TwoHeats | MiddleForce

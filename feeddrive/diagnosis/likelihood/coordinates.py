@@ -16,6 +16,7 @@ from feeddrive.diagnosis.likelihood.coordinate_kinds import (
     Linear,
     Logarithmic,
     MiddleForce,
+    Order,
     Sine,
     TwoHeats,
 )
@@ -66,7 +67,7 @@ FIXED = {
 }
 """Parameters that choose the form of a law; they are tried, not fitted."""
 
-FORM = {"centre", "order", "damping", "start"}
+FORM = {"centre", "damping", "start"}
 """Linear parameters that choose the form of a law, not its size."""
 
 FACTORS = {"factor", "coulomb_factor", "viscous_factor", "ratio"}
@@ -93,8 +94,8 @@ def coordinates_of(effect: Effect, plant: Plant) -> list[Coordinate]:
     """The coordinates in which the effect is fitted, for the form that its values choose."""
     if {"amplitude", "phase"} <= set(effect.values):
         travel = plant.chain.motor_radius if effect.port is Port.MOTOR else plant.chain.radius
-        # the order comes first: what the components say of the phase goes with it
-        return [Linear("order", ORDER_SIZE), Sine(effect.parameter("amplitude").size, plant.middle / travel)]
+        middle = plant.middle / travel
+        return [Sine(effect.parameter("amplitude").size, middle), Order(ORDER_SIZE, middle)]
     if effect.name in TWO_HEATS:
         return [TWO_HEATS[effect.name]]
     if isinstance(effect, PositionSpring):
@@ -207,6 +208,8 @@ def _least_left(effect: Effect, plant: Plant) -> float:
 
 def _absent(coordinate: Coordinate) -> float:
     """Where the effect is absent in one coordinate; NaN where the coordinate chooses a form."""
+    if isinstance(coordinate, Order):
+        return math.nan
     if isinstance(coordinate, Logarithmic):
         return 0.0 if coordinate.key in FACTORS else math.nan
     if isinstance(coordinate, Linear):

@@ -37,6 +37,10 @@ IMAGES = (-2, -1, 1, 2)
 SKIRT = 2.0
 """Frequency over the edge of the band up to which the folded part is asked for: of twice the edge a 250th passes."""
 
+EXACT = 1e-4
+"""Share of the torque to which it is predicted from an exact motion: splines differentiate so well in the band
+(`band.SHARE_OF_SAMPLE_RATE`). A simulated recording without noise has no rows with less than its noise."""
+
 FINENESS = 1e-3
 """Step of the frequency, over itself, in which the answer is read: a tenth of the width of a mode damped by 1 %."""
 
@@ -60,7 +64,8 @@ def folded_rows(recording: Recording, plant: Plant, band: Band) -> BoolArray:
     folded = band.filter(np.fft.irfft(share * np.fft.rfft(torque - straight), len(torque)))
     reach = math.ceil(band.sample_rate / band.edge)
     level = np.sqrt(np.maximum(uniform_filter1d(folded**2, reach), 0.0))
-    return np.asarray(binary_dilation(level > sensor_noise(torque, band), iterations=reach))
+    unseen = math.hypot(sensor_noise(torque, band), EXACT * float(np.std(band.filter(torque))))
+    return np.asarray(binary_dilation(level > unseen, iterations=reach))
 
 
 def folded_sentence(rows: BoolArray, recording: Recording) -> str:

@@ -248,10 +248,8 @@ def strongest_sines(
             taken, (a, b, *_) = _taken(columns, left)
             found.append(Sine(order, float(np.hypot(a, b)), float(np.arctan2(b, a)), (taken - by_line) / square))
         lowest, highest = highest, 2 * highest
-    best, apart = (
-        list[Sine](),
-        np.pi / max(float(np.ptp(angle)), 1e-12),
-    )  # two orders nearer than half the resolution are one
+    best = list[Sine]()
+    apart = np.pi / max(float(np.ptp(angle)), 1e-12)  # two orders nearer than half the resolution are one
     for one in sorted(found, key=lambda one: -one.share):
         if all(abs(one.order - other.order) > apart for other in best):
             best.append(one)
