@@ -5,7 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.starts.residual_readings import strongest_orders, strongest_sines
+from feeddrive.diagnosis.starts.sines import (
+    longest_sine,
+    sine_among_fringes,
+    strongest_orders,
+    strongest_sines,
+)
 
 STEP, EDGE = 2e-3, 50.0
 
@@ -64,13 +69,13 @@ def test_order_that_shows_at_the_ends_of_the_travel_alone_is_found_among_its_fri
     noise = np.random.default_rng(8).standard_normal(len(angle))
     slow = speed < 100.0
     residual = (
-        np.where(slow, 0.5 * np.sin(12 * angle + 0.4) + 0.2 * np.sin(24 * angle), 0.0) + 0.002 * angle + 0.1 * noise
+        np.where(slow, 0.5 * np.sin(12 * angle + 0.4) + 0.2 * np.sin(24 * angle), 0.0) + 0.0002 * angle + 0.1 * noise
     )
-    (first, *others) = strongest_sines(angle, residual, speed, EDGE)
-    # tapered to the middle of the travel, its fringes 0.144 beside it took more
+    (first,) = sine_among_fringes(angle, residual, speed, EDGE)
     assert first.order == pytest.approx(12.0, abs=0.3 / 110)  # of one turn over the travel
     assert first.amplitude == pytest.approx(0.5, rel=0.1)
-    assert all(abs(one.order - 12.0) > 0.5 / 110.9 for one in others)
+    # of less than half of what is left it is not told
+    assert sine_among_fringes(angle, residual + 0.6 * noise, speed, EDGE) == []
 
 
 @pytest.mark.parametrize("pitch", [2.66, 4.5])
@@ -80,9 +85,7 @@ def test_force_over_some_turns_is_found_on_a_stroke_of_a_few_pitches(pitch: floa
     noise = np.random.default_rng(7).standard_normal(len(angle))
     residual = 0.5 * np.sin(angle / pitch + 0.7) + 0.3 * np.sin(6 * angle) + 0.02 * angle + noise
     speed = np.gradient(angle, STEP)
-    nearest = min(
-        strongest_sines(angle, residual, speed, EDGE, longest=np.inf), key=lambda one: abs(one.order - 1 / pitch)
-    )
+    (nearest,) = longest_sine(angle, residual, np.inf)
     assert nearest.order == pytest.approx(1 / pitch, abs=0.1 / 8)  # an eighth of what ten revolutions resolve
     assert nearest.amplitude == pytest.approx(0.5, rel=0.15)
     # of a lead it is a curve along the stroke

@@ -10,14 +10,12 @@ import numpy as np
 from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous
 from feeddrive.diagnosis.starts.residual_readings import (
-    Sine,
     bump_of,
     friction_over_position,
     residual_force,
     residual_forces,
-    sine_at,
-    strongest_sines,
 )
+from feeddrive.diagnosis.starts.sines import Sine, longest_sine, sine_among_fringes, sine_at, strongest_sines
 from feeddrive.effects.base import Effect, Port, number
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.friction.friction_vs_position import FrictionVsPosition
@@ -101,7 +99,9 @@ def ripple(scene: Scene) -> list[list[Effect]]:
     evidence, run = scene.problem.evidence[at], scene.runs[at]
     rows = evidence.fit_rows
     residual, angle = scene.residuals[at]["motor_torque"][rows], run.motor_angle[rows]
-    sines = strongest_sines(angle, residual, run.motor_speed[rows], evidence.edge, longest=math.inf)
+    sines = strongest_sines(angle, residual, run.motor_speed[rows], evidence.edge)
+    sines += sine_among_fringes(angle, residual, run.motor_speed[rows], evidence.edge)
+    sines += longest_sine(angle, residual, math.inf)
     sines += _harmonics(scene, TorqueRipple, angle, residual)
     return [[sine(TorqueRipple, one) for one in sines]] if sines else []
 
@@ -191,6 +191,7 @@ def ball_pass_ripple(scene: Scene) -> list[list[Effect]]:
     resisting = (torque * np.sign(speed))[moving]
     edge = scene.problem.evidence[at].edge
     sines = strongest_sines(angle, resisting - resisting.mean(), speed[moving], edge, count=1)
+    sines += sine_among_fringes(angle, resisting, speed[moving], edge)
     sines += _harmonics(scene, BallPassRipple, angle, resisting)
     kept = [sine(BallPassRipple, one) for one in sines if one.share >= LEAST_SINE]
     return [kept] if kept else []

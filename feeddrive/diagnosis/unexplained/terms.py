@@ -8,7 +8,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from feeddrive.diagnosis.starts.residual_readings import strongest_orders
+from feeddrive.diagnosis.starts.sines import strongest_orders
 from feeddrive.diagnosis.unexplained.sine_order import SineOrder
 from feeddrive.diagnosis.unexplained.view import View
 from feeddrive.typing import FloatArray
