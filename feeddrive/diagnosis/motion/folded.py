@@ -39,7 +39,7 @@ SKIRT = 2.0
 
 EXACT = 1e-4
 """Share of the torque to which it is predicted from an exact motion: splines differentiate so well in the band
-(`band.SHARE_OF_SAMPLE_RATE`). A simulated recording without noise has no rows with less than its noise."""
+(`band.SHARE_OF_SAMPLE_RATE`). A recording without noise would lose all its rows otherwise."""
 
 FINENESS = 1e-3
 """Step of the frequency, over itself, in which the answer is read: a tenth of the width of a mode damped by 1 %."""

@@ -148,10 +148,11 @@ def strongest_sines(
         return []
     for slow, lowest, highest in _octaves(speed, edge):
         there, left = angle[slow], residual[slow]
-        level, _ = _taken(np.ones((len(there), 1)), left)
+        mean = np.ones((len(there), 1))
+        level, _ = _taken(mean, left)
         for order in strongest_orders(there, left, highest, count, lowest):
             # of some slow samples at the reversals a sine of any size passes near, and takes no more than is there
-            found.append(_sine_of(order, there, left, np.ones((len(there), 1)), level, square))
+            found.append(_sine_of(order, there, left, mean, level, square))
     return sorted(found, key=lambda one: -one.share)[:count]
 
 
