@@ -19,7 +19,7 @@ from feeddrive.diagnosis.calibration.together import fitted_together
 from feeddrive.diagnosis.certainty.certainty_result import Ambiguity
 from feeddrive.diagnosis.certainty.imitations import imitations_of
 from feeddrive.diagnosis.certainty.rival_odds import Residuals, odds_and_distance
-from feeddrive.diagnosis.certainty.same_by_law import twins_of
+from feeddrive.diagnosis.certainty.same_by_law import softer_while_seen, twins_of
 from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.finding.elsewhere import elsewhere, where
 from feeddrive.diagnosis.finding.search import Search
@@ -131,7 +131,10 @@ def ambiguous_sets(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Ambigu
     """The sets of names, the effect taken first, with the reason."""
     sets = []
     for effect, alike in zip(found.fit.effects, rivals, strict=True):
-        twins = twins_of(effect, found.problem.plant, found.problem.evidence)
+        twins = [
+            *twins_of(effect, found.problem.plant, found.problem.evidence),
+            *softer_while_seen(effect, found.problem, found.fit.effects),
+        ]
         apart = {rival.effect.name: rival.distance for rival in alike}
         others = list((apart | {twin.name: 0.0 for twin in twins}).items())
         others.sort(key=lambda other: other[1])

@@ -4,6 +4,7 @@
     payload m = inertia_deviation m r^2, at motor or screw       in a rigid structure that moves level
     constant_force F = channel_offset F r of the torque          where nothing is declared to hang or pull
     lead_error_cumulative s = channel_gain 1 + s of the scale    beyond what any class of screw misses
+    stiffness_deviation a < 1 = preload_loss a, F1               where no force beyond F1 passes the nut
 
 Without a table position the motor angle is compared with the torque alone, and a torque that acts later than recorded
 is an angle that is recorded late. The drive is named, since every drive acts late, and the angle is listed with it. In
@@ -12,6 +13,7 @@ a rigid structure one mass moves, (J_m + J_s) / r^2 + m; the mass on the table i
 | symbol | meaning | unit |
 |---|---|---|
 | r | table travel per motor angle | m/rad |
+| a, F1 | stiffness over the declared one, and the force up to which a nut that has lost its preload is soft | 1, N |
 """
 
 from __future__ import annotations
@@ -19,11 +21,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.suspicion.quality import read_otherwise
-from feeddrive.effects.base import Effect
+from feeddrive.effects.base import Effect, number
+from feeddrive.effects.chain.stiffness_deviation import WHOLE, StiffnessDeviation
 from feeddrive.effects.source.weight import Weight
+from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.plant.plant import Plant
+from feeddrive.units.quantity import format_quantity
 
 
 @dataclass(frozen=True)
@@ -55,3 +64,26 @@ def twins_of(effect: Effect, plant: Plant, evidence: Sequence[Evidence]) -> tupl
         for one in read_otherwise([effect], plant, has_torque)
         if one.alternatives and one.kind != effect.name and effect.name != "drive_delay"
     )
+
+
+def softer_while_seen(effect: Effect, problem: Problem, effects: Sequence[Effect]) -> tuple[Twin, ...]:
+    """The lost preload that says the same as a softer axis or nut, with the force beyond which none was seen.
+
+    Args:
+        effect: found.
+        problem: declared plant and recordings.
+        effects: all that were found.
+    """
+    asked = {candidate.name for candidate in problem.predictor.candidates}
+    if (
+        not isinstance(effect, StiffnessDeviation)
+        or effect.place not in (WHOLE, "nut")
+        or number(effect.values["factor"]) >= 1
+        or PreloadLoss.name not in asked
+        or any(one.name == PreloadLoss.name for one in effects)
+    ):
+        return ()
+    greatest = max((float(np.max(np.abs(run.force))) for run in scene_of(problem, effects).runs), default=0.0)
+    seen = f"no force beyond {format_quantity(greatest, 'N')} passed the nut in these recordings"
+    reason = f"{seen}: a nut that has lost its preload is as soft up to some force, and as stiff as declared beyond it"
+    return (Twin(PreloadLoss.name, f"{reason}; greater forces tell them apart"),)
