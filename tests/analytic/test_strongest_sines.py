@@ -58,6 +58,19 @@ def test_error_of_every_revolution_is_found_on_a_stroke_of_a_few() -> None:
     assert all(one.order > 1.6 for one in strongest_sines(few, residual, speed / 3, EDGE))
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_order_is_no_fringe_of_two_places_at_which_most_time_is_spent(seed: int) -> None:
+    """Tapered bins have peaks 1 / 5 of an order apart, where the places lie 5 turns apart: three of six were fringes."""
+    random = np.random.default_rng([seed, 31])
+    order, apart = random.uniform(5.0, 15.0), random.uniform(4.5, 5.5)
+    turns = np.concatenate([np.linspace(0, 0.4, 4000), np.linspace(0.4, apart, 300), apart + np.linspace(0, 0.4, 4000)])
+    turns = np.concatenate([[-0.2], turns, [apart + 0.6]])
+    residual = np.sin(2 * np.pi * order * turns + random.uniform(0, 6)) + random.standard_normal(len(turns))
+    (first, *_) = strongest_sines(2 * np.pi * turns, residual, np.full(len(turns), 2.0), EDGE)
+    # the amplitude over the noise of four thousand samples at either place: a fiftieth of a period
+    assert first.order == pytest.approx(order, abs=0.02 / apart)
+
+
 def test_order_that_shows_at_the_ends_of_the_travel_alone_is_found_among_its_fringes() -> None:
     # to and fro over a hundred turns, slow enough for order 12 on the first and the last two and a few in between
     places = np.concatenate(

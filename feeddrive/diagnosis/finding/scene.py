@@ -41,6 +41,13 @@ class Scene:
         """Index of the recording with the most fitted samples."""
         return int(np.argmax([e.fit_rows.sum() for e in self.problem.evidence]))
 
+    def evened(self, at: int, name: str) -> FloatArray:
+        """What is left of a channel of the recording number `at`, (n,), each frequency weighed by its noise.
+
+        An encoder's steps shake a drive at its resonances: the strongest sines there are none of the machine.
+        """
+        return self.problem.evidence[at].evened(name, self.residuals[at][name], 1)
+
 
 def scene_of(problem: Problem, found: Sequence[Effect]) -> Scene:
     """What starts are read from, after the effects found so far."""

@@ -36,6 +36,9 @@ MOST = 0.5
 OVERSAMPLING = 8
 """Zero padding, so that a peak is met to an eighth of the resolution."""
 
+LOBE = 2 * OVERSAMPLING
+"""Half width of a peak under Hann's taper: two periods in the travel (Harris, Proc. IEEE 66 (1978) 51)."""
+
 TOLD = 1e-6
 """Share of their product by which sine and cosine stand apart on the samples: below it both are one column, but for
 rounding, and what they take is none of either."""
@@ -50,7 +53,9 @@ def strongest_orders(
     The residual is averaged per angle bin first, so that rests and slow strokes do not weigh by their duration. Bins
     that no sample met, between slow reversals and at speed, count for nothing: of a curve drawn across them, or of
     zeros in their place, the largest peaks would be those of the gaps. Source: Zechmeister and Kuerster, Astron.
-    Astrophys. 496 (2009) 577, equations 4 to 15, the bins tapered so that a trend does not leak into high orders.
+    Astrophys. 496 (2009) 577, equations 4 to 15, the bins tapered so that a trend does not leak into high orders. Where
+    most samples lie at some places of the travel, a peak of tapered bins is a fringe of theirs: within its lobe the
+    order is taken that takes most of the samples.
 
     Args:
         angle: shape (n,) [rad].
@@ -72,16 +77,23 @@ def strongest_orders(
     samples = np.bincount(bins, minlength=size)
     mean = np.bincount(bins, weights=residual, minlength=size) / np.maximum(samples, 1)
     weight = np.where(samples > 0, np.hanning(size + 2)[1:-1] if tapered else 1.0, 0.0)
-    share = _shares_of_sines(mean, weight / weight.sum())
-    orders = np.arange(len(share)) * BINS_PER_TURN / (OVERSAMPLING * size)
+    tapering = _shares_of_sines(mean, weight / weight.sum())
+    orders = np.arange(len(tapering)) * BINS_PER_TURN / (OVERSAMPLING * size)
     allowed = (orders > max(lowest, LEAST_PERIODS / turns)) & (orders < min(highest, BINS_PER_TURN / 4))
-    share = np.where(allowed, share, 0.0)
-    peaks, _ = find_peaks(share, distance=OVERSAMPLING)
-    best = peaks[np.argsort(share[peaks])[::-1][:count]]
+    tapering = np.where(allowed, tapering, 0.0)
+    peaks, _ = find_peaks(tapering, distance=OVERSAMPLING)
+    best = peaks[np.argsort(tapering[peaks])[::-1][:count]]
+    if tapered:
+        share = np.where(allowed, _shares_of_sines(mean, samples / samples.sum()), 0.0)
+        near = np.clip(best[:, None] + np.arange(-LOBE, LOBE + 1), 1, len(share) - 2)
+        best = np.array(list(dict.fromkeys(near[np.arange(len(best)), np.argmax(share[near], axis=1)])), dtype=int)
+    else:
+        share = tapering
     # the top of the parabola through a peak and its neighbours: an eighth of the resolution is many deviations
     below, top, above = share[best - 1], share[best], share[best + 1]
     aside = 0.5 * (above - below) / np.maximum(2 * top - above - below, np.finfo(float).tiny)
-    return [float(one) for one in orders[best] + np.where(np.minimum(below, above) > 0, aside, 0.0) * orders[1]]
+    inside = (np.minimum(below, above) > 0) & (np.abs(aside) < 1)
+    return [float(one) for one in orders[best] + np.where(inside, aside, 0.0) * orders[1]]
 
 
 def _shares_of_sines(values: FloatArray, weight: FloatArray) -> FloatArray:

@@ -98,7 +98,7 @@ def ripple(scene: Scene) -> list[list[Effect]]:
     at = scene.longest
     evidence, run = scene.problem.evidence[at], scene.runs[at]
     rows = evidence.fit_rows
-    residual, angle = scene.residuals[at]["motor_torque"][rows], run.motor_angle[rows]
+    residual, angle = scene.evened(at, "motor_torque")[rows], run.motor_angle[rows]
     sines = strongest_sines(angle, residual, run.motor_speed[rows], evidence.edge)
     sines += sine_among_fringes(angle, residual, run.motor_speed[rows], evidence.edge)
     sines += longest_sine(angle, residual, math.inf)
@@ -113,7 +113,7 @@ def lead_error(scene: Scene) -> list[list[Effect]]:
     if "table_position" not in scene.residuals[at]:
         return []
     rows = evidence.fit_rows
-    residual, angle = scene.residuals[at]["table_position"][rows], run.screw_angle[rows]
+    residual, angle = scene.evened(at, "table_position")[rows], run.screw_angle[rows]
     sines = strongest_sines(angle, residual - residual.mean(), run.screw_speed[rows], evidence.edge)
     sines += _harmonics(scene, LeadErrorPeriodic, angle, residual)
     kept = [sine(LeadErrorPeriodic, one) for one in sines if one.share >= LEAST_SINE]
@@ -187,7 +187,7 @@ def ball_pass_ripple(scene: Scene) -> list[list[Effect]]:
     speed = run.screw_speed[rows]
     moving = np.abs(speed) > 0.01 * np.abs(speed).max()
     angle = run.screw_angle[rows][moving]
-    torque = scene.plant.chain.radius * residual_force(scene, at)[rows]
+    torque = scene.plant.chain.radius / scene.plant.chain.motor_radius * scene.evened(at, "motor_torque")[rows]
     resisting = (torque * np.sign(speed))[moving]
     edge = scene.problem.evidence[at].edge
     sines = strongest_sines(angle, resisting - resisting.mean(), speed[moving], edge, count=1)
