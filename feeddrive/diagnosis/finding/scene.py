@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import LoadMotion
@@ -42,11 +43,16 @@ class Scene:
         return int(np.argmax([e.fit_rows.sum() for e in self.problem.evidence]))
 
     def evened(self, at: int, name: str) -> FloatArray:
-        """What is left of a channel of the recording number `at`, (n,), each frequency weighed by its noise.
+        """What is left of a channel of the recording number `at`, (n,), each frequency weighed by what is no law's.
 
-        An encoder's steps shake a drive at its resonances: the strongest sines there are none of the machine.
+        An encoder's steps shake a drive at its resonances: the strongest sines there are none of the machine. What is
+        left beyond sensor and encoder is the laws' that are missing, which are taken to miss every frequency alike.
         """
-        return self.problem.evidence[at].evened(name, self.residuals[at][name], 1)
+        evidence, left = self.problem.evidence[at], self.residuals[at][name]
+        if not isinstance(evidence, AxisEvidence) or name not in evidence.gains:
+            return left
+        beyond = float(np.mean(left[evidence.fit_rows] ** 2)) - evidence.known_to(name) ** 2
+        return evidence.beside_misfit(name, max(beyond, 0.0)).evened(name, left, 1)
 
 
 def scene_of(problem: Problem, found: Sequence[Effect]) -> Scene:

@@ -194,6 +194,17 @@ class AxisEvidence(Evidence):
         weighed += self.gains[name][0] * mean
         return np.where(known, weighed, thin) if gaps else weighed
 
+    def beside_misfit(self, name: str, square: float) -> Self:
+        """The evidence with a channel whose frequencies weigh by its noise and a misfit of laws, white in the band.
+
+        Args:
+            name: of a channel that has gains.
+            square: mean square of the misfit, in the channel's unit squared.
+        """
+        more = square / self.noise[name] ** 2
+        gains = self.gains[name] * np.sqrt((1 + more) / (1 + more * self.gains[name] ** 2))
+        return replace(self, gains={**self.gains, name: gains})
+
     def _weighing(self, name: str, every: int) -> Weighing:
         """Gains of a channel for its series at every k-th sample."""
         key = (name, every)
