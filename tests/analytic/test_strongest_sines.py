@@ -60,7 +60,7 @@ def test_error_of_every_revolution_is_found_on_a_stroke_of_a_few() -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_order_is_no_fringe_of_two_places_at_which_most_time_is_spent(seed: int) -> None:
-    """Tapered bins have peaks 1 / 5 of an order apart, where the places lie 5 turns apart: three of six were fringes."""
+    """Tapered bins have peaks 1 / 5 of an order apart, where the places lie 5 turns apart: half were fringes."""
     random = np.random.default_rng([seed, 31])
     order, apart = random.uniform(5.0, 15.0), random.uniform(4.5, 5.5)
     turns = np.concatenate([np.linspace(0, 0.4, 4000), np.linspace(0.4, apart, 300), apart + np.linspace(0, 0.4, 4000)])

@@ -18,7 +18,7 @@ from tests.recovery.fleet.case import case
 
 
 def test_ripple_is_looked_for_with_every_frequency_by_its_noise(tmp_path: Path) -> None:
-    """3.7 mN m of order 8, where 17 bits on a screw of 40 mm shake a table of a ton by ten times as much, at 40 to 80 Hz."""
+    """3.7 mN m of order 8, where 17 bits shake a table of a ton by ten times as much at 40 to 80 Hz."""
     plant_file, fitted, _ = case(9580).write(tmp_path)
     plant = read_plant(plant_file)
     problem = calibrated(prepared(plant, [read_recording(fitted)], [], 1.0)[0])
