@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated
+from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.starts.starts import ripple
@@ -30,3 +31,12 @@ def test_ripple_is_looked_for_with_every_frequency_by_its_noise(tmp_path: Path) 
     turns = float(np.ptp(scene.runs[0].motor_angle)) / (2 * np.pi)
     assert number(nearest.values["order"]) == pytest.approx(8.0, abs=1 / (8 * turns))
     assert number(nearest.values["amplitude"]) == pytest.approx(3.66e-3, rel=0.15)
+
+
+@pytest.mark.slow
+def test_both_orders_of_that_ripple_are_named(tmp_path: Path) -> None:
+    """Its law is another: a second harmonic of 0.6. "Nothing" was named."""
+    plant_file, fitted, judged = case(9580).write(tmp_path)
+    found, _ = diagnose(read_plant(plant_file), [read_recording(fitted)], [read_recording(judged)])
+    assert [one.name for one in found.effects] == ["torque_ripple"] * 2
+    assert sorted(float(one.parameters["order"].value) for one in found.effects) == pytest.approx([8, 16], abs=0.02)
