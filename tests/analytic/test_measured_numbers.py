@@ -97,6 +97,7 @@ def test_a_value_beyond_its_tolerance_is_found(tmp_path: Path, key: str, text: s
     assert found.plant.with_values({}).plant.name == axis.plant.name
 
 
+@pytest.mark.slow
 def test_springs_in_series_are_told_as_a_set(tmp_path: Path) -> None:
     """Nut, bearing and housing lie in series: numbers at the table cannot tell which of them is soft."""
     axis = fd.load("kimm_testbed")

@@ -105,7 +105,8 @@ dead_time = "{TICK} s"
 """
 
 
-@pytest.mark.parametrize("loop", ["command", pytest.param("error", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("loop", ["command", "error"])
 def test_speed_loop_is_compared_with_its_controller(loop: str, tmp_path: Path) -> None:
     """Closed and open: nothing found where nothing is, a mass where one is, by the same oracle in matrices."""
     (tmp_path / "controller.toml").write_text(CONTROLLER, encoding="utf-8")

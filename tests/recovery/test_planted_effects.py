@@ -15,7 +15,7 @@ from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis
 from tests.claims.book import CLAIMS
 from tests.recovery.planted import TRUTH, null_errors, verdict
 
-SMOKE = ("bench/null", "bench/torque_ripple", "bench/backlash", "light/stribeck")
+SMOKE = ("bench/null", "bench/torque_ripple", "light/stribeck")
 """Run in every suite: nothing, a source, a transmission and a friction effect. The others are marked slow."""
 
 CASES = [f"{axis}/{case}" for axis, cases in TRUTH.items() for case in cases]

@@ -50,7 +50,8 @@ def assert_answered(plant: Path, recording: Path, out: Path) -> None:
         assert channel["after"]["rms"] <= 1.1 * channel["before"]["rms"]
 
 
-@pytest.mark.parametrize("mass", ["0.3 kg", pytest.param("40000 kg", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("mass", ["0.3 kg", "40000 kg"])
 def test_rigid_axis_of_a_wrong_mass(mass: str, tmp_path: Path) -> None:
     plant = tmp_path / "plant.toml"
     plant.write_text(PLANT.replace('"60.0 kg"', f'"{mass}"'), encoding="utf-8")
