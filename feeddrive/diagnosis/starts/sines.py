@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import find_peaks
 
-from feeddrive.typing import BoolArray, FloatArray
+from feeddrive.typing import BoolArray, FloatArray, IntegerArray
 
 BINS_PER_TURN = 256
 """Angle bins per revolution; the highest order is a quarter of it."""
@@ -36,8 +36,9 @@ MOST = 0.5
 OVERSAMPLING = 8
 """Zero padding, so that a peak is met to an eighth of the resolution."""
 
-LOBE = 2 * OVERSAMPLING
-"""Half width of a peak under Hann's taper: two periods in the travel (Harris, Proc. IEEE 66 (1978) 51)."""
+FRINGES = 16 * OVERSAMPLING
+"""Reach about a peak within which a fringe of it is looked for: where most time is spent at places of a sixteenth of
+the travel, the order stands among fringes of about its size that reach so far."""
 
 TOLD = 1e-6
 """Share of their product by which sine and cosine stand apart on the samples: below it both are one column, but for
@@ -53,9 +54,9 @@ def strongest_orders(
     The residual is averaged per angle bin first, so that rests and slow strokes do not weigh by their duration. Bins
     that no sample met, between slow reversals and at speed, count for nothing: of a curve drawn across them, or of
     zeros in their place, the largest peaks would be those of the gaps. Source: Zechmeister and Kuerster, Astron.
-    Astrophys. 496 (2009) 577, equations 4 to 15, the bins tapered so that a trend does not leak into high orders. Where
-    most samples lie at some places of the travel, a peak of tapered bins is a fringe of theirs: within its lobe the
-    order is taken that takes most of the samples.
+    Astrophys. 496 (2009) 577, equations 4 to 15, the bins tapered so that a trend does not leak into high orders.
+    Where most samples lie at some places of the travel, a peak of tapered bins is a fringe of theirs: the orders about
+    it that take most of the samples stand in its place.
 
     Args:
         angle: shape (n,) [rad].
@@ -85,8 +86,7 @@ def strongest_orders(
     best = peaks[np.argsort(tapering[peaks])[::-1][:count]]
     if tapered:
         share = np.where(allowed, _shares_of_sines(mean, samples / samples.sum()), 0.0)
-        near = np.clip(best[:, None] + np.arange(-LOBE, LOBE + 1), 1, len(share) - 2)
-        best = np.array(list(dict.fromkeys(near[np.arange(len(best)), np.argmax(share[near], axis=1)])), dtype=int)
+        best = _with_fringes(share, best)[:count]
     else:
         share = tapering
     # the top of the parabola through a peak and its neighbours: an eighth of the resolution is many deviations
@@ -94,6 +94,14 @@ def strongest_orders(
     aside = 0.5 * (above - below) / np.maximum(2 * top - above - below, np.finfo(float).tiny)
     inside = (np.minimum(below, above) > 0) & (np.abs(aside) < 1)
     return [float(one) for one in orders[best] + np.where(inside, aside, 0.0) * orders[1]]
+
+
+def _with_fringes(share: FloatArray, peaks: IntegerArray) -> IntegerArray:
+    """Tops of what sines take of the samples, (n,), about some peaks: those that take most of what the highest does."""
+    near = np.unique(np.clip(peaks[:, None] + np.arange(-FRINGES, FRINGES + 1), 1, len(share) - 2))
+    tops = near[(share[near] >= share[near - 1]) & (share[near] > share[near + 1])]
+    found = tops[share[tops] > 0.5 * np.max(share[tops], initial=0.0)]
+    return found[np.argsort(share[found])[::-1]]
 
 
 def _shares_of_sines(values: FloatArray, weight: FloatArray) -> FloatArray:

@@ -190,7 +190,7 @@ def ball_pass_ripple(scene: Scene) -> list[list[Effect]]:
     torque = scene.plant.chain.radius / scene.plant.chain.motor_radius * scene.evened(at, "motor_torque")[rows]
     resisting = (torque * np.sign(speed))[moving]
     edge = scene.problem.evidence[at].edge
-    sines = strongest_sines(angle, resisting - resisting.mean(), speed[moving], edge, count=1)
+    sines = strongest_sines(angle, resisting - resisting.mean(), speed[moving], edge)
     sines += sine_among_fringes(angle, resisting, speed[moving], edge)
     sines += _harmonics(scene, BallPassRipple, angle, resisting)
     kept = [sine(BallPassRipple, one) for one in sines if one.share >= LEAST_SINE]
