@@ -100,8 +100,9 @@ def _with_fringes(share: FloatArray, peaks: IntegerArray) -> IntegerArray:
     """Tops of what sines take of the samples, (n,), about some peaks: those that take most of what the highest does."""
     near = np.unique(np.clip(peaks[:, None] + np.arange(-FRINGES, FRINGES + 1), 1, len(share) - 2))
     tops = near[(share[near] >= share[near - 1]) & (share[near] > share[near + 1])]
-    found = tops[share[tops] > 0.5 * np.max(share[tops], initial=0.0)]
-    return found[np.argsort(share[found])[::-1]]
+    most = tops[share[tops] > 0.5 * np.max(share[tops], initial=0.0)]
+    found: IntegerArray = most[np.argsort(share[most])[::-1]]
+    return found
 
 
 def _shares_of_sines(values: FloatArray, weight: FloatArray) -> FloatArray:
