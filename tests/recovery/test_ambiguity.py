@@ -86,7 +86,7 @@ def softer(factor: float) -> Effect:
 
 
 def test_softer_axis_may_be_a_lost_preload_up_to_the_forces_that_were_seen() -> None:
-    """Beyond the force that is told, and not below it, the two predict otherwise."""
+    """Lost up to more force than is told, it predicts the same; lost up to half of it, it does not."""
     found, judged = settled([softer(0.4)], [softer(0.4)], lead(1e-9), seed=7)
     (one,) = ambiguous_sets(found, rivals_of(found, judged))
     assert one.names == ("stiffness_deviation", "preload_loss")
