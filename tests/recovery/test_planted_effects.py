@@ -16,7 +16,7 @@ from tests.claims.book import CLAIMS
 from tests.recovery.planted import TRUTH, null_errors, verdict
 
 SMOKE = ("bench/null", "bench/torque_ripple", "light/stribeck")
-"""Run in every suite: nothing, a source and a friction effect. The others are marked slow; the demo finds a play."""
+"""Run in every suite: nothing, a source and a friction effect. The others are marked slow."""
 
 CASES = [f"{axis}/{case}" for axis, cases in TRUTH.items() for case in cases]
 
