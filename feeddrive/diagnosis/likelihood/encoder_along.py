@@ -1,20 +1,21 @@
 """What an encoder's steps alone say for one set of effects against another.
 
-    v = 1/D Σ_d (δ_d' ε_d)² / δ_d'δ_d,    δ_d = W (f_B(A_d) - f_A(A_d)),    ε_d = W (f_A(A) - f_A(A_d))
+    v = (1/D Σ_d δ_d' ε_d / |δ_d|)²,    δ_d = W (f_B(A_d) - f_A(A_d)),    ε_d = W (f_A(A) - f_A(A_d))
 
 | symbol | meaning | unit |
 |---|---|---|
 | A, A_d | motion that is expected, and those that would be if it were the true one (`motion.encoder_error`) | rad |
 | f_A, f_B | what the machines with the set of fewer values and with the other make of a motion, over the noise | 1 |
 | W | takes out what declared values within their tolerances may do (`Calibration`) | 1 |
-| v | mean square of what a machine of the set A alone gives along the difference of the two, over D draws | 1 |
+| v | square of what a machine of the set A alone gives along the difference of the two, in the mean over D draws | 1 |
 
 A residual's own spectrum tells how much an error scatters, not that the answer of a plant to the measured motion holds
 the same error: a mode, a softer spring, a mass answer the motor as a filter does, and take away what they are asked
 with. That is as large in every block of a recording, so that blocks left out do not show it. What a machine of the
-first set gives for the second where the encoder alone is at work is here, in the mean over draws and in their scatter;
-it is a part of the variance that the two sets are compared by. Source: Carroll et al., Measurement Error in Nonlinear
-Models (2006), chapter 5 (errors that are simulated once more).
+first set gives for the second where the encoder alone is at work is here, in the mean over draws: what they all share.
+By what they scatter the residual scatters as well, and its own spectrum counts that; what a mean of D holds of it, a
+D-th, is left in. v is a part of the variance that the two sets are compared by. Source: Carroll et al., Measurement
+Error in Nonlinear Models (2006), chapter 5 (errors that are simulated once more).
 """
 
 from __future__ import annotations
@@ -41,15 +42,15 @@ def encoder_along(problem: Problem, plain: Plant, other: Plant) -> float:
     count = max((len(draws) for draws in drawn), default=0)
     if not count:
         return 0.0
-    expected, squares = _rows(problem, plain, problem.evidence), []
+    expected, along = _rows(problem, plain, problem.evidence), []
     for draw in range(count):
         at = [draws[draw] if draws else e for draws, e in zip(drawn, problem.evidence, strict=True)]
         here = _rows(problem, plain, at)
         difference = _rows(problem, other, at) - here
         length = float(np.linalg.norm(difference))
-        squares.append((float(difference @ (expected - here)) / length) ** 2 if length > 0 else 0.0)
-    known = [square for square in squares if np.isfinite(square)]
-    return float(np.mean(known)) if known else 0.0
+        along.append(float(difference @ (expected - here)) / length if length > 0 else 0.0)
+    known = [one for one in along if np.isfinite(one)]
+    return float(np.mean(known)) ** 2 if known else 0.0
 
 
 def _rows(problem: Problem, machine: Plant, at: Sequence[Evidence]) -> FloatArray:
