@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 from scipy.special import chdtri
@@ -202,8 +203,8 @@ def placed_by_scatter(problem: Problem, found: Fit) -> Known | None:
     there = at_declared(problem)
     declared = there.machine(found.effects)
     there = replace(there, evidence=tuple(weighed_by(e, declared) for e in there.evidence))
-    effects, share, before = found.effects, 1.0, np.zeros(0)
-    for _ in range(PASSES):
+    effects, share, before, left = found.effects, 1.0, np.zeros(0), math.inf
+    for turn in count():
         there = with_slopes(there, effects)
         result = fit(there, effects)
         effects, known = result.effects, known_values(there, result)
@@ -211,9 +212,10 @@ def placed_by_scatter(problem: Problem, found: Fit) -> Known | None:
             return None
         u, _ = known.likeliest({})
         step = np.array([known.c(i, float(one)) for i, one in enumerate(u)]) - known.at
-        if np.max(np.abs(step), initial=0.0) < ENOUGH:
+        # on its way from far a machine leaves half of what it left before; there it says nothing of its values
+        if np.max(np.abs(step), initial=0.0) < ENOUGH or (turn >= PASSES and result.squared_error > 0.5 * left):
             break
-        share = _share(share, before, step) if len(before) else 1.0
+        share, left = _share(share, before, step) if len(before) else 1.0, result.squared_error
         there, before = there.at_values(known.at + share * step), step
     return known
 

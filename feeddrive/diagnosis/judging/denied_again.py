@@ -13,6 +13,7 @@ from dataclasses import replace
 from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.judging.veto import without_denied
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
 from feeddrive.diagnosis.recordings.recordings import is_shift
 
 Found = tuple[Search, list[Judged]]
@@ -41,27 +42,22 @@ def settled_names(
     overtaken = _denied_later(found, kept)
     if other is None:
         return kept, judged
-    if not overtaken or not _adds(other[0], kept) or budget.skips("names denied beside what is no longer named"):
+    if not overtaken or budget.skips("names denied beside what is no longer named"):
         return other
     progress(f"asking again beside what is named now: {', '.join(overtaken)}")
     reasons = {name: why for name, why in other[0].impossible.items() if name not in overtaken}
     more = _gone_on(replace(other[0], impossible=reasons), judge, progress)
-    return other if more is None or not _adds(more[0], other[0]) else more
+    return other if more is None else more
 
 
 def _gone_on(kept: Search, judge: Callable[[Search], list[Judged]], progress: Callable[[str], None]) -> Found | None:
-    """What a search that goes on from some names finds and data not fitted leave; None where it finds no more."""
+    """What a search that goes on from some names finds and data not fitted leave; None where that is no likelier."""
     again = search(kept.problem, progress, kept)
-    if len(again.fit.effects) <= len(kept.fit.effects):
-        return None
-    return without_denied(again, judge(again), judge)
+    found, judged = without_denied(again, judge(again), judge)
+    before, after = (Standing(one.problem, one.fit) for one in (kept, found))
+    return (found, judged) if odds_between(before, after, found.count) > 0 else None
 
 
 def _denied_later(found: Search, kept: Search) -> list[str]:
     """Names that were denied once another one had gone, in their order."""
     return [name for name in kept.impossible if name not in found.impossible][1:]
-
-
-def _adds(found: Search, before: Search) -> bool:
-    """Whether there is a further name."""
-    return len(found.fit.effects) > len(before.fit.effects)

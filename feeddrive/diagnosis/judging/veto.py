@@ -18,7 +18,7 @@ One name goes at a time, that with the least gain of those that are denied: of t
 stand. So it may where the interval of one that carries holds none beside the other alone (`_instead`). An effect that
 differs between the fitted recordings may be absent from the judged one, and is denied by the last alone. Where the
 judged recording is known to differ in a level from the fitted ones (`judged_changes`), gain and worsening are asked
-with that level allowed for.
+with that level allowed for; worsening as it is where the plant as declared meets the channel as well without any.
 
 A name that takes the place of one that was not denied is not asked for its gain where the judged data do not tell the
 two apart (`spared`): of two laws that predict the same there, a bound on each one's own gain would part them by luck.
@@ -34,6 +34,7 @@ import numpy as np
 from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
 from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.finding.attempt import with_short_blocks
+from feeddrive.diagnosis.finding.refitting import refitted
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import ITERATIONS
 from feeddrive.diagnosis.judging.asked_of_fit import (
@@ -55,7 +56,7 @@ from feeddrive.diagnosis.likelihood.fit import fit, linear_step
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, regained
 from feeddrive.diagnosis.likelihood.tolerances import SURE
-from feeddrive.diagnosis.recordings.compared import judged_changes
+from feeddrive.diagnosis.recordings.compared import JudgedChanges, judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, is_shift, without_shifts
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
@@ -99,7 +100,9 @@ def without_denied(
         still_named = any(effect.name == gone.name for effect in rest)
         reasons = found.impossible if still_named else {**found.impossible, gone.name: denied.reason}
         problem = without_effects(found.problem, [gone], rest)
-        found = replace(found, problem=problem, fit=fit(problem, rest), impossible=reasons)
+        # declared values have stood beside what is gone
+        problem, fitted = refitted(problem, fit(problem, rest))
+        found = replace(found, problem=problem, fit=fitted, impossible=reasons)
         judged = judge(found)
 
 
@@ -150,7 +153,8 @@ def _first_denied(found: Search, judged: Sequence[Judged], spared: Collection[st
             "" if stood or not reason else f"{reason}{said.get(effects[i].name, '')}"
             for i, (reason, stood) in enumerate(zip(idle, stands, strict=True))
         ]
-        worst = _worst_channel(other.problem, other.allowed)
+        if not worst or _brings_more(found, other, worst):
+            worst = _worst_channel(other.problem, other.allowed)
     at_end, around_none = ends_reached(problem, found.fit), sizes_around_none(problem, found.fit)
     as_declared = values_within_tolerance(problem, found.fit)
     pushing = friction_that_pushes(problem, effects)
@@ -168,6 +172,17 @@ def _first_denied(found: Search, judged: Sequence[Judged], spared: Collection[st
         reason = f"with it {worst} is predicted worse than as declared on data not fitted, by more than its scatter"
         denied = [Denied(place, shares[place].comparison.gain, reason)]
     return min(denied, key=lambda one: one.gain, default=None)
+
+
+def _brings_more(found: Search, other: JudgedChanges, name: str) -> bool:
+    """Whether what differs in the judged recordings says of a channel what the plant as declared does not.
+
+    It does where a named effect is itself another there. Else names and differences together have to meet the channel
+    better than the plant as declared, which needs neither.
+    """
+    if any(target.meets(effect) for target in other.changes.targets for effect in without_shifts(found.fit.effects)):
+        return True
+    return worse_by(other.problem, other.allowed, name, than_after=True) > 0
 
 
 def _instead(found: Search, place: int, gains: Sequence[float]) -> Denied:
@@ -263,9 +278,12 @@ def _worst_channel(problem: Problem, judged: Sequence[Judged]) -> str:
     return name if worse[name] > 0 else ""
 
 
-def worse_by(problem: Problem, judged: Sequence[Judged], name: str) -> float:
-    """Share by which a channel's squared error as declared is smaller, beyond its scatter; negative where it is not."""
-    before, after, blocks, first, values = [], [], [], 0, 0.0
+def worse_by(problem: Problem, judged: Sequence[Judged], name: str, than_after: bool = False) -> float:
+    """Share by which a channel's squared error as declared is smaller, beyond its scatter; negative where it is not.
+
+    than_after: the other way round, by how much that with what was found is smaller.
+    """
+    before, after, blocks, count, values = [], [], [], 0, 0.0
     for one in judged:
         if name not in one.evidence.channels:
             continue
@@ -274,7 +292,9 @@ def worse_by(problem: Problem, judged: Sequence[Judged], name: str) -> float:
         numbers = (np.flatnonzero(rows) * step / one.evidence.block).astype(np.int64)
         before.append(error_series(problem, one.before, one.evidence)[name][rows])
         after.append(error_series(problem, one.after, one.evidence)[name][rows])
-        blocks.append(first + numbers)
-        first += int(numbers.max(initial=-1)) + 1
+        blocks.append(count + numbers)
+        count += int(numbers.max(initial=-1)) + 1
         values += 2 * one.evidence.edge * float(rows.sum()) * step
-    return worse_beyond_scatter(np.concatenate(before), np.concatenate(after), np.concatenate(blocks), values)
+    first, second = np.concatenate(before), np.concatenate(after)
+    pair = (second, first) if than_after else (first, second)
+    return worse_beyond_scatter(*pair, np.concatenate(blocks), values)

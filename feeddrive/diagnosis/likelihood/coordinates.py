@@ -57,7 +57,6 @@ TWO_HEATS = {
 """Heats that are linear, though their parameters are not."""
 
 FIXED = {
-    ("presliding", "break_away"),
     ("friction_vs_position", "position"),
     ("stiffness_vs_position", "middle_compliance"),
     ("stiffness_vs_position", "low"),
@@ -67,8 +66,11 @@ FIXED = {
 }
 """Parameters that choose the form of a law; they are tried, not fitted."""
 
-FORM = {"centre", "damping", "start"}
+FORM = {"centre", "damping", "start", "break_away"}
 """Linear parameters that choose the form of a law, not its size."""
+
+LAWS_AT_ENDS = {("presliding", "break_away")}
+"""Shares at whose ends a law is a law as any other: a bristle that gives way little by little, or at once."""
 
 FACTORS = {"factor", "coulomb_factor", "viscous_factor", "ratio"}
 """Parameters that are 1 where the effect is absent; other sizes are 0."""
@@ -77,11 +79,12 @@ GROWS_WITH = {("sensor_lag", "time_constant"): 1, ("heat_sink", "conductance"): 
 """Sizes known to a factor, and the power of them that the effect grows with: its slope over their logarithm is then the
 effect itself, and a step of one takes it away."""
 
-LEAST = {("drive_delay", "delay"): 0.0, ("preload_loss", "ratio"): 0.1}
+LEAST = {("drive_delay", "delay"): 0.0, ("preload_loss", "ratio"): 0.1, ("presliding", "break_away"): 1e-3}
 """Ends of a search inside the physical range: a torque that acts before it is recorded is one recorded late, and that
 is `channel_delay`. Balls that touch without preload are as stiff as F^(1/3) (Hertz), up to the force F over two thirds
 of (F / F_p)^(1/3) of what they are under a preload F_p: a tenth at a three-hundredth of it, below the friction that a
-motion has to overcome. What is softer over a force that is seen does not touch, and that is `backlash`."""
+motion has to overcome. What is softer over a force that is seen does not touch, and that is `backlash`. A bristle that
+sticks does so up to some deflection: one of no such share slips from the start, and is another law."""
 
 NEAR_END = 0.02
 """Share of an end of a parameter's range within which it counts as standing there."""
@@ -120,6 +123,8 @@ def _unused(effect: Effect, plant: Plant) -> set[str]:
     if effect.name == "friction_vs_position":
         as_table = isinstance(effect.values["position"], tuple)
         return {"peak", "centre", "half_width"} if as_table else {"delta_force"}
+    if effect.name == "presliding":
+        return set() if effect.values["break_away"] else {"break_away"}
     if effect.name == "ambient_drift":
         return {"period", "amplitude"} if isinstance(effect.values["time"], tuple) else {"shape"}
     if effect.name == "friction_deviation":
@@ -302,7 +307,13 @@ def at_an_end(effect: Effect, plant: Plant) -> bool:
     low, high = coordinate_ends([effect], plant)
     absent, _ = absent_coordinates([effect], plant)
     known = {p.key: p.default for p in effect.parameters if p.default is not None and p.minimum <= p.default}
+    known = {key: one for key, one in known.items() if (effect.name, key) not in LAWS_AT_ENDS}
     plain = effect.with_values(**{key: one for key, one in known.items() if isinstance(effect.values.get(key), float)})
     near = np.minimum(np.abs(vector - low), np.abs(high - vector)) < 1e-4 * np.maximum(1.0, np.abs(vector))
     allowed = np.isclose(vector, absent) | (np.isclose(vector, read_coordinates([plain], plant)) & np.isnan(absent))
-    return bool(np.any(near & ~allowed))
+    either = [
+        isinstance(coordinate, Linear) and (effect.name, coordinate.key) in LAWS_AT_ENDS
+        for coordinate in coordinates_of(effect, plant)
+        for _ in coordinate.read(effect)
+    ]
+    return bool(np.any(near & ~allowed & ~np.array(either, dtype=bool)))
