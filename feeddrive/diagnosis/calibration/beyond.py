@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import count
+from itertools import chain, repeat
 
 import numpy as np
 from scipy.special import chdtri
@@ -204,7 +204,7 @@ def placed_by_scatter(problem: Problem, found: Fit) -> Known | None:
     declared = there.machine(found.effects)
     there = replace(there, evidence=tuple(weighed_by(e, declared) for e in there.evidence))
     effects, share, before, left = found.effects, 1.0, np.zeros(0), math.inf
-    for turn in count():
+    for more in chain(range(PASSES, 0, -1), repeat(0)):
         there = with_slopes(there, effects)
         result = fit(there, effects)
         effects, known = result.effects, known_values(there, result)
@@ -213,7 +213,7 @@ def placed_by_scatter(problem: Problem, found: Fit) -> Known | None:
         u, _ = known.likeliest({})
         step = np.array([known.c(i, float(one)) for i, one in enumerate(u)]) - known.at
         # on its way from far a machine leaves half of what it left before; there it says nothing of its values
-        if np.max(np.abs(step), initial=0.0) < ENOUGH or (turn >= PASSES and result.squared_error > 0.5 * left):
+        if np.max(np.abs(step), initial=0.0) < ENOUGH or (not more and result.squared_error > 0.5 * left):
             break
         share, left = _share(share, before, step) if len(before) else 1.0, result.squared_error
         there, before = there.at_values(known.at + share * step), step

@@ -182,9 +182,9 @@ def is_worth_a_search(fault: Suspect, mended: Problem, found: Search) -> bool:
     if fault.beside:
         return True
     problem, _ = _begun(found)
-    effects, least, left = found.fit.effects, math.inf, mended.plain_error(())
+    effects, least, left = found.fit.effects, math.inf, _over_noise_of(mended, problem).plain_error(())
     if len(effects) == 1:  # at its end, which a fit from the declared values on need not reach
-        least = found.problem.plain_error(effects)
+        least = _over_noise_of(found.problem, problem).plain_error(effects)
         if len(found.fit.coordinates) == 1 and left < 1 / LEVEL**2 and not left < least / SAME_ERROR:
             return False  # one value for one, and what is left is noise, of which a name takes nothing
     for effect in effects:
@@ -204,12 +204,38 @@ def _begun(found: Search) -> tuple[Problem, Fit]:
     return problem, empty
 
 
+def _over_noise_of(problem: Problem, first: Problem) -> Problem:
+    """Recordings, mended or not, over the noise that was read of them as they were recorded.
+
+    Two readings of a level differ by some per cent, and sets are told by half of one. A row's noise is what it is
+    whatever its time; as much of it as the band takes is in the band, and a torque times a factor has it times that.
+
+    Args:
+        problem: of the recordings, with what was found or mended.
+        first: of the recordings as they are, nothing being found.
+    """
+    evidence = []
+    for e, other in zip(problem.evidence, first.evidence, strict=True):
+        if isinstance(e, AxisEvidence) and isinstance(other, AxisEvidence):  # no other has a suspect
+            taken = e.band.noise_gain / other.band.noise_gain
+            noise = {name: its * taken * _factor(other, e, name) for name, its in other.noise.items()}
+            evidence.append(replace(e, noise=noise))
+    return replace(problem, evidence=tuple(evidence))
+
+
+def _factor(first: AxisEvidence, mended: AxisEvidence, name: str) -> float:
+    """What a channel was multiplied by when it was mended; a drift is in no difference of rows."""
+    before, after = (float(np.nanstd(np.diff(one.recording[name]))) for one in (first, mended))
+    return after / before if before > 0 and after > 0 else 1.0
+
+
 def is_better(fault: Suspect, mended: Search, found: Search) -> bool:
     """Whether a fault and what was found beside it say as much as what was found without it, or more with no more.
 
     As much is what chance does for the effects that are spared: for each, less than is asked of any.
     """
-    before, after = (one.problem.plain_error(one.fit.effects) for one in (found, mended))
+    first, _ = _begun(found)
+    before, after = (_over_noise_of(one.problem, first).plain_error(one.fit.effects) for one in (found, mended))
     if len(mended.fit.coordinates) + 1 < len(found.fit.coordinates):
         spared = max(1, len(found.fit.effects) - len(mended.fit.effects))
         return after <= (1 + spared * fault.comparison.least) * before

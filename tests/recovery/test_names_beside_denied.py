@@ -1,0 +1,45 @@
+"""What stands once a name is denied: fitted anew, the likelier set taken, no channel worse than declared."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.judging.result import Diagnosis
+from feeddrive.plant.file.plant_file import read_plant
+from feeddrive.recording import read_recording
+from tests.recovery.fleet.case import case
+
+pytestmark = pytest.mark.slow
+
+
+def diagnosed(seed: int, tmp_path: Path) -> Diagnosis:
+    plant_file, fitted, judged = case(seed).write(tmp_path)
+    found, _ = diagnose(read_plant(plant_file), [read_recording(fitted)], [read_recording(judged)])
+    return found
+
+
+def test_a_force_beside_friction_by_load_is_found_once_a_friction_of_all_speeds_is_denied(tmp_path: Path) -> None:
+    """A Stribeck friction beyond all speeds stood for a declared friction: beside it the force was 700 N off."""
+    found = diagnosed(9582, tmp_path)
+    force, friction = sorted(found.effects, key=lambda one: one.name)
+    assert (force.name, friction.name) == ("constant_force", "load_dependent_friction")
+    assert force.parameters["force"].value == pytest.approx(4480.0, rel=0.02)
+    assert friction.parameters["coefficient"].value == pytest.approx(0.0415, rel=0.02)
+
+
+def test_no_change_of_the_judged_recording_spares_a_name_that_it_does_without(tmp_path: Path) -> None:
+    """A delay of 0.5 µs took the place of a stiffness over the stroke: the plant as declared meets the other stroke."""
+    found = diagnosed(701_219, tmp_path)
+    for channel in found.channels:
+        assert channel.after.rms < 1.05 * channel.before.rms
+
+
+def test_a_stiffness_off_by_30_percent_is_named(tmp_path: Path) -> None:
+    """Values placed by their scatter were still on their way from the declared machine."""
+    found = diagnosed(9624, tmp_path)
+    assert {one.name for one in found.effects} == {"coulomb_asymmetry", "stiffness_deviation"}
+    (stiffness,) = [one for one in found.effects if one.name == "stiffness_deviation"]
+    assert stiffness.parameters["factor"].value == pytest.approx(0.7, rel=0.02)
