@@ -306,7 +306,10 @@ def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[
         progress("simulating the closed loop, and refining in simulation")
         refinement = refined(found, refinement.outcome, lambda other: _judged(other, evidence))
         found, (judged, rehomed) = refinement.found, refinement.outcome
-    return _Settled(replace(searched, search=found), rivals, judged, rehomed, refinement)
+    changes = searched.changes
+    if changes is not None:  # beside the declared values of the names that are left
+        changes = replace(changes, problem=found.problem, fit=found.fit)
+    return _Settled(Searched(found, changes), rivals, judged, rehomed, refinement)
 
 
 def _names(found: Search) -> set[str]:

@@ -33,6 +33,7 @@ def test_a_force_beside_friction_by_load_is_found_once_a_friction_of_all_speeds_
 def test_no_change_of_the_judged_recording_spares_a_name_that_it_does_without(tmp_path: Path) -> None:
     """A delay of 0.5 µs took the place of a stiffness over the stroke: the plant as declared meets the other stroke."""
     found = diagnosed(701_219, tmp_path)
+    assert found.effects == ()
     for channel in found.channels:
         assert channel.after.rms < 1.05 * channel.before.rms
 
@@ -43,3 +44,11 @@ def test_a_stiffness_off_by_30_percent_is_named(tmp_path: Path) -> None:
     assert {one.name for one in found.effects} == {"coulomb_asymmetry", "stiffness_deviation"}
     (stiffness,) = [one for one in found.effects if one.name == "stiffness_deviation"]
     assert stiffness.parameters["factor"].value == pytest.approx(0.7, rel=0.02)
+
+
+def test_a_lead_error_stands_once_a_stiffness_within_its_tolerance_is_denied(tmp_path: Path) -> None:
+    """Values that had stood beside the stiffness left the other stroke at four times the error, for which it was denied."""
+    found = diagnosed(700_959, tmp_path)
+    (lead,) = found.effects
+    assert lead.name == "lead_error_cumulative"
+    assert lead.parameters["slope"].value == pytest.approx(5.379e-9, rel=0.05)

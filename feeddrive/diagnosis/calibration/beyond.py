@@ -212,8 +212,9 @@ def placed_by_scatter(problem: Problem, found: Fit) -> Known | None:
             return None
         u, _ = known.likeliest({})
         step = np.array([known.c(i, float(one)) for i, one in enumerate(u)]) - known.at
-        # on its way from far a machine leaves half of what it left before; there it says nothing of its values
-        if np.max(np.abs(step), initial=0.0) < ENOUGH or (not more and result.squared_error > 0.5 * left):
+        # one that still leaves less than half of what it left before is on its way: slopes there are of another machine
+        done = not more and (result.squared_error > 0.5 * left or problem.budget.is_spent)
+        if np.max(np.abs(step), initial=0.0) < ENOUGH or done:
             break
         share, left = _share(share, before, step) if len(before) else 1.0, result.squared_error
         there, before = there.at_values(known.at + share * step), step

@@ -24,7 +24,6 @@ from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between
-from feeddrive.diagnosis.motion.preparing import weighed_by
 from feeddrive.diagnosis.motion.row_steps import in_told_steps
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.chain.payload import Payload
@@ -50,23 +49,6 @@ def refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
         variance = there.calibration.variance
         result = min(result, other, key=lambda one: cost(one[0].settled(one[1].effects), one[1].effects, variance))
     return balanced(*result)
-
-
-def levelled(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
-    """A set beside no noise above what the set leaves of its channel, the encoder's error weighed beside that.
-
-    The noise is read from fourth differences, which hold an injected torque and what a resonance answers as well.
-    Before the resonance is named more is left of the channel than that.
-    """
-    there = problem.levelled(found.effects)
-    pairs = zip(problem.evidence, there.evidence, strict=True)
-    quieter = [before.noise != after.noise for before, after in pairs]
-    if problem.calibration is None or not any(quieter):
-        return problem, found
-    machine = there.machine(found.effects)
-    evidence = tuple(weighed_by(e, machine, quiet) for e, quiet in zip(there.evidence, quieter, strict=True))
-    there = replace(there, evidence=evidence)
-    return refitted(there, fit(there, found.effects, iterations=JOINT_ITERATIONS))
 
 
 def in_steps_told(problem: Problem, found: Fit) -> tuple[Problem, Fit]:

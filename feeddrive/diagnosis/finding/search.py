@@ -29,7 +29,6 @@ from feeddrive.diagnosis.finding.refitting import (
     balanced,
     begun_as_declared,
     in_steps_told,
-    levelled,
     refitted,
     where_friction_brakes,
     with_scale_beyond,
@@ -156,7 +155,7 @@ def search(
         names = asked.taken.names if asked.taken is not None and far is None else []
         trials += [_trial(number, attempt, attempt.name in names) for attempt in rounds[-1]]
         if after is not None:
-            problem, found = levelled(*in_steps_told(*after))
+            problem, found = in_steps_told(*after)
             progress(f"found so far: {', '.join(effect.name for effect in found.effects)}")
             if members_of(found.effects) not in met:
                 met.add(members_of(found.effects))

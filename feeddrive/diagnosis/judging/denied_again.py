@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from feeddrive.diagnosis.finding.members import members_of
 from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.judging.veto import without_denied
@@ -47,13 +48,19 @@ def settled_names(
     progress(f"asking again beside what is named now: {', '.join(overtaken)}")
     reasons = {name: why for name, why in other[0].impossible.items() if name not in overtaken}
     more = _gone_on(replace(other[0], impossible=reasons), judge, progress)
-    return other if more is None else more
+    if more is None:
+        return other
+    names = {effect.name for effect in more[0].fit.effects}
+    denied = {name: why for name, why in other[0].impossible.items() if name not in names}
+    return replace(more[0], impossible={**denied, **more[0].impossible}), more[1]
 
 
 def _gone_on(kept: Search, judge: Callable[[Search], list[Judged]], progress: Callable[[str], None]) -> Found | None:
-    """What a search that goes on from some names finds and data not fitted leave; None where that is no likelier."""
+    """Other names that a search from some finds and data not fitted leave; None where none are likelier."""
     again = search(kept.problem, progress, kept)
     found, judged = without_denied(again, judge(again), judge)
+    if members_of(found.fit.effects) == members_of(kept.fit.effects):
+        return None
     before, after = (Standing(one.problem, one.fit) for one in (kept, found))
     return (found, judged) if odds_between(before, after, found.count) > 0 else None
 

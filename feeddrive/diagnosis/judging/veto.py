@@ -18,7 +18,8 @@ One name goes at a time, that with the least gain of those that are denied: of t
 stand. So it may where the interval of one that carries holds none beside the other alone (`_instead`). An effect that
 differs between the fitted recordings may be absent from the judged one, and is denied by the last alone. Where the
 judged recording is known to differ in a level from the fitted ones (`judged_changes`), gain and worsening are asked
-with that level allowed for; worsening as it is where the plant as declared meets the channel as well without any.
+with that level allowed for. Where the plant as declared meets a channel as well as all that together, the level is no
+excuse: worsening is then asked without it.
 
 A name that takes the place of one that was not denied is not asked for its gain where the judged data do not tell the
 two apart (`spared`): of two laws that predict the same there, a bound on each one's own gain would part them by luck.
@@ -34,7 +35,7 @@ import numpy as np
 from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
 from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.finding.attempt import with_short_blocks
-from feeddrive.diagnosis.finding.refitting import refitted
+from feeddrive.diagnosis.finding.refitting import at_rest, refitted
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import ITERATIONS
 from feeddrive.diagnosis.judging.asked_of_fit import (
@@ -100,8 +101,8 @@ def without_denied(
         still_named = any(effect.name == gone.name for effect in rest)
         reasons = found.impossible if still_named else {**found.impossible, gone.name: denied.reason}
         problem = without_effects(found.problem, [gone], rest)
-        # declared values have stood beside what is gone
-        problem, fitted = refitted(problem, fit(problem, rest))
+        # the declared values were fitted beside what is gone; one step rarely takes them to where they are without it
+        problem, fitted = at_rest(*refitted(problem, fit(problem, rest)))
         found = replace(found, problem=problem, fit=fitted, impossible=reasons)
         judged = judge(found)
 

@@ -302,6 +302,7 @@ def at_an_end(effect: Effect, plant: Plant) -> bool:
     """Whether a coordinate of an effect is at an end of its physical range, as far as slopes resolve it.
 
     Where the end is the absent effect, or a default, it is a value as any other: a damper of nothing, a share of none.
+    So it is where laws stand at both ends (`LAWS_AT_ENDS`).
     """
     vector = read_coordinates([effect], plant)
     low, high = coordinate_ends([effect], plant)

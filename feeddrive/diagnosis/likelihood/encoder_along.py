@@ -7,7 +7,7 @@
 | A, A_d | motion that is expected, and those that would be if it were the true one (`motion.encoder_error`) | rad |
 | f_A, f_B | what the machines with the set of fewer values and with the other make of a motion, over the noise | 1 |
 | W | takes out what declared values within their tolerances may do (`Calibration`) | 1 |
-| v | square of what a machine of the set A alone gives along the difference of the two, in the mean over D draws | 1 |
+| v | square of the mean, over D draws, of what a machine of the set A alone gives along the difference of the two | 1 |
 
 A residual's own spectrum tells how much an error scatters, not that the answer of a plant to the measured motion holds
 the same error: a mode, a softer spring, a mass answer the motor as a filter does, and take away what they are asked

@@ -39,8 +39,8 @@ from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
 from feeddrive.typing import FloatArray, IntegerArray
 
-UNCHANGING = ("order",)
-"""Parameters that no wear and no temperature changes."""
+UNCHANGING = ("order", "break_away")
+"""Parameters that no wear and no temperature changes, and those of a law's form."""
 
 LEVELS = (FrictionDeviation.name, ConstantForce.name, Payload.name, StiffnessDeviation.name)
 

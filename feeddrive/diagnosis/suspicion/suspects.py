@@ -216,10 +216,10 @@ def _over_noise_of(problem: Problem, first: Problem) -> Problem:
     """
     evidence = []
     for e, other in zip(problem.evidence, first.evidence, strict=True):
-        if isinstance(e, AxisEvidence) and isinstance(other, AxisEvidence):  # no other has a suspect
-            taken = e.band.noise_gain / other.band.noise_gain
-            noise = {name: its * taken * _factor(other, e, name) for name, its in other.noise.items()}
-            evidence.append(replace(e, noise=noise))
+        assert isinstance(e, AxisEvidence) and isinstance(other, AxisEvidence)  # no other has a suspect
+        taken = e.band.noise_gain / other.band.noise_gain
+        noise = {name: its * taken * _factor(other, e, name) for name, its in other.noise.items()}
+        evidence.append(replace(e, noise=noise))
     return replace(problem, evidence=tuple(evidence))
 
 
