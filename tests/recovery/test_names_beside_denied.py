@@ -47,7 +47,7 @@ def test_a_stiffness_off_by_30_percent_is_named(tmp_path: Path) -> None:
 
 
 def test_a_lead_error_stands_once_a_stiffness_within_its_tolerance_is_denied(tmp_path: Path) -> None:
-    """Values that had stood beside the stiffness left the other stroke at four times the error, for which it was denied."""
+    """Values that had stood beside the stiffness left the other stroke at four times the error: denied."""
     found = diagnosed(700_959, tmp_path)
     (lead,) = found.effects
     assert lead.name == "lead_error_cumulative"

@@ -29,6 +29,8 @@ from feeddrive.effects.base import Effect, number
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.chain.stiffness_deviation import WHOLE, StiffnessDeviation
 from feeddrive.effects.chain.structural_mode import StructuralMode, resonates_within
+from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.source.position_spring import PositionSpring
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 
 
@@ -118,6 +120,29 @@ def as_payload(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
     resonates = resonates_within(mode, max(e.edge for e in problem.evidence))
     told = resonates and odds_between(Standing(*other), Standing(problem, found), count) > TOLD
     return (problem, found) if told else other
+
+
+def as_force(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
+    """A set with a constant force where it has a spring, where that is likelier; else as it is.
+
+    A spring is a force that also changes along the stroke, and near one no slope tells of a set without it: the force
+    of some thousand newtons that goes with it is too far.
+
+    Args:
+        problem: recordings.
+        found: the set.
+        count: candidates and starts that were tried.
+    """
+    names = [effect.name for effect in found.effects]
+    if PositionSpring.name not in names or ConstantForce.name in names:
+        return problem, found
+    place = names.index(PositionSpring.name)
+    spring = found.effects[place]
+    way = problem.plant.middle - number(spring.values["zero"])
+    force = ConstantForce.of(force=number(spring.values["stiffness"]) * way)
+    rest = (*found.effects[:place], *found.effects[place + 1 :])
+    other = refitted(problem, fit(problem, (*rest, force), iterations=JOINT_ITERATIONS))
+    return other if odds_between(Standing(problem, found), Standing(*other), count) > 0 else (problem, found)
 
 
 def where_friction_brakes(problem: Problem, found: Fit) -> tuple[Problem, Fit]:

@@ -24,6 +24,7 @@ from feeddrive.diagnosis.finding.materiality import is_material_here
 from feeddrive.diagnosis.finding.members import Member, members_of
 from feeddrive.diagnosis.finding.open_map import open_curves, with_curves_of
 from feeddrive.diagnosis.finding.refitting import (
+    as_force,
     as_payload,
     at_rest,
     balanced,
@@ -48,6 +49,7 @@ from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
+from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.effects.transmission.backlash import Backlash
 
 MOST_ROUNDS = 12
@@ -140,11 +142,11 @@ def search(
             forms.add(form)
             problem, found = with_its_curves(*unnamed)
             continue
-        after = _refitted_with(asked, found)
+        after = _refitted_with(asked, found, denied)
         begin = begun_as_declared(problem, found)
         if begin is not None:
             other = _asked(*begin, impossible, denied, number)
-            there, here = _refitted_with(other, begin[1]), after or (problem, found)
+            there, here = _refitted_with(other, begin[1], denied), after or (problem, found)
             if there is not None and odds_between(Standing(*here), Standing(*there), asked.now.count) > 0:
                 asked, near, after = other, other.near, there
         far = None if found.effects else _likelier_value(problem, found, after, asked.now.count, denied)
@@ -231,13 +233,14 @@ def _likelier_value(
     return far, gain_between(Standing(problem, found), Standing(*far))
 
 
-def _refitted_with(asked: _Asked, found: Fit) -> tuple[Problem, Fit] | None:
+def _refitted_with(asked: _Asked, found: Fit, denied: Container[str]) -> tuple[Problem, Fit] | None:
     """A likelier set, declared values fitted beside it; what left the set at hand takes its value and curve along."""
     taken = asked.taken
     if taken is None:
         return None
     problem = without_effects(taken.problem, found.effects, taken.fit.effects)
     there = refitted(with_curves_of(problem, taken.fit.effects), taken.fit)
+    there = as_force(*there, asked.now.count) if ConstantForce.name not in denied else there
     return as_payload(*there, asked.now.count)
 
 
