@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.likelihood.encoder_along import encoder_along
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
@@ -16,7 +17,9 @@ from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
 from feeddrive.effects.travel.thermal_growth import ThermalGrowth
-from tests.recovery.fleet.case import encoder_null_seeds
+from feeddrive.plant.file.plant_file import read_plant
+from feeddrive.recording import read_recording
+from tests.recovery.fleet.case import case, encoder_null_seeds
 from tests.recovery.fleet.problem import calibrated_case
 
 COUNT = 50
@@ -71,3 +74,13 @@ def test_what_all_draws_share_stands_against_a_damped_mode(healthy: Problem) -> 
     none, having = fit(healthy, ()), fit(healthy, [mode], iterations=0)
     given = encoder_along(healthy, healthy.machine(()), healthy.machine([mode]))
     assert given > variance_along(healthy, none, none, having)
+
+
+@pytest.mark.slow
+def test_a_play_of_a_tenth_of_a_micrometre_is_no_lost_preload(tmp_path: Path) -> None:
+    """What the steps do beside a play scatters at its reversals alone; as if spread over all, it spoke for a spring."""
+    plant_file, fitted, judged = case(701_359).write(tmp_path)
+    found, _ = diagnose(read_plant(plant_file), [read_recording(fitted)], [read_recording(judged)])
+    (play,) = found.effects
+    assert play.name == "backlash"
+    assert play.parameters["width"].value == pytest.approx(1.005e-7, rel=0.05)

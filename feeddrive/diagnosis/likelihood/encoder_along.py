@@ -14,8 +14,10 @@ the same error: a mode, a softer spring, a mass answer the motor as a filter doe
 with. That is as large in every block of a recording, so that blocks left out do not show it. What a machine of the
 first set gives for the second where the encoder alone is at work is here, in the mean over draws: what they all share.
 By what they scatter the residual scatters as well, and its own spectrum counts that; what a mean of D holds of it, a
-D-th, is left in. v is a part of the variance that the two sets are compared by. Source: Carroll et al., Measurement
-Error in Nonlinear Models (2006), chapter 5 (errors that are simulated once more).
+D-th, is left in. Where either machine has a free play v is the mean of the squares: what the steps do there is at
+reversals, and grows with the motion, which no spectrum of a whole residual tells. v is a part of the variance that the
+two sets are compared by. Source: Carroll et al., Measurement Error in Nonlinear Models (2006), chapter 5 (errors that
+are simulated once more).
 """
 
 from __future__ import annotations
@@ -26,6 +28,7 @@ import numpy as np
 
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
@@ -49,8 +52,11 @@ def encoder_along(problem: Problem, plain: Plant, other: Plant) -> float:
         difference = _rows(problem, other, at) - here
         length = float(np.linalg.norm(difference))
         along.append(float(difference @ (expected - here)) / length if length > 0 else 0.0)
-    known = [one for one in along if np.isfinite(one)]
-    return float(np.mean(known)) ** 2 if known else 0.0
+    known = np.array([one for one in along if np.isfinite(one)])
+    if not len(known):
+        return 0.0
+    plays = has_play((*plain.effects, *other.effects))
+    return float(np.mean(known**2)) if plays else float(np.mean(known)) ** 2
 
 
 def _rows(problem: Problem, machine: Plant, at: Sequence[Evidence]) -> FloatArray:
