@@ -42,3 +42,16 @@ def test_a_parabola_is_taken_out_of_comparisons_and_not_of_the_rest() -> None:
         left, whole = (float(np.linalg.norm(one.weighted(series, rows))) for one in (evidence.with_map(True), evidence))
         # the scale's own noise, a five-hundredth of the stroke's, is in the columns; the ends of the stroke are cut off
         assert abs(left / whole - told) < 0.03
+
+
+def test_a_map_of_no_columns_takes_nothing_away() -> None:
+    """A recording of a short stroke is judged beside one whose map is open."""
+    plant = read_plant(Path(plants_folder()) / "bench_axis.toml")
+    time = np.arange(0.0, 8.0, 1e-3)
+    angle = 0.6 * np.pi * (1 - np.cos(2 * np.pi * 0.5 * time))
+    table = plant.chain.motor_radius * angle + 1e-7 * np.random.default_rng(1).standard_normal(len(time))
+    evidence = prepare(Recording("short", time, {"motor_angle": angle, "table_position": table}, 1e-3), plant, 1.0)
+    assert evidence.lead_map is not None and evidence.lead_map.shape[1] == 0
+    rows, series = evidence.thinned(evidence.fit_rows), {"table_position": evidence.in_band(table)}
+    opened = evidence.with_map(True)
+    assert np.array_equal(opened.weighted(series, rows), evidence.weighted(series, rows))

@@ -125,7 +125,7 @@ class AxisEvidence(Evidence):
     def weighted(self, series: dict[str, FloatArray], rows: BoolArray) -> FloatArray:
         """Channels at some samples as any are, less what motion that is not known, or a lead map, may make of them."""
         weighted = super().weighted(series, rows)
-        has_map = self.open_map and self.lead_map is not None
+        has_map = self.open_map and self.lead_map is not None and self.lead_map.shape[1] > 0
         if not (self.unsure or any(self.law_curves.values()) or has_map) or not rows.any():
             return weighted
         key = rows.tobytes()
