@@ -23,8 +23,9 @@ def test_the_share_is_found_from_that_of_a_start(share: float) -> None:
     planted = Presliding.of(stiffness=2e7, damping=200.0, break_away=share)
     problem = Problem(plant, (drawn(plant, evidence, [planted], seed=31),), AxisPredictor())
     (found,) = fit(problem, [planted.with_values(break_away=0.7, stiffness=1.7e7)]).effects
-    assert found.values["break_away"] == pytest.approx(share, abs=0.1)
-    assert found.values["stiffness"] == pytest.approx(2e7, rel=0.05)
+    # half of the least way from the start, so that a value that stays there fails; the stiffness began 15 % away
+    assert found.values["break_away"] == pytest.approx(share, abs=0.05)
+    assert found.values["stiffness"] == pytest.approx(2e7, rel=0.01)
 
 
 def test_one_that_slips_from_the_start_has_no_share() -> None:

@@ -14,6 +14,9 @@ from tests.recovery.fleet.case import case
 
 pytestmark = pytest.mark.slow
 
+VALUE = 0.05
+"""Share by which a value may be off: intervals of 95 % told for these are 2 to 4 % wide either way."""
+
 
 def diagnosed(seed: int, tmp_path: Path) -> Diagnosis:
     plant_file, fitted, judged = case(seed).write(tmp_path)
@@ -26,8 +29,8 @@ def test_a_force_beside_friction_by_load_is_found_once_a_friction_of_all_speeds_
     found = diagnosed(9582, tmp_path)
     force, friction = sorted(found.effects, key=lambda one: one.name)
     assert (force.name, friction.name) == ("constant_force", "load_dependent_friction")
-    assert force.parameters["force"].value == pytest.approx(4480.0, rel=0.02)
-    assert friction.parameters["coefficient"].value == pytest.approx(0.0415, rel=0.02)
+    assert force.parameters["force"].value == pytest.approx(4480.0, rel=VALUE)
+    assert friction.parameters["coefficient"].value == pytest.approx(0.0415, rel=VALUE)
 
 
 def test_no_change_of_the_judged_recording_spares_a_name_that_it_does_without(tmp_path: Path) -> None:
@@ -35,7 +38,7 @@ def test_no_change_of_the_judged_recording_spares_a_name_that_it_does_without(tm
     found = diagnosed(701_219, tmp_path)
     assert found.effects == ()
     for channel in found.channels:
-        assert channel.after.rms < 1.05 * channel.before.rms
+        assert channel.after.rms < 1.05 * channel.before.rms  # the level of noise is known to some per cent
 
 
 def test_a_stiffness_off_by_30_percent_is_named(tmp_path: Path) -> None:
@@ -43,7 +46,7 @@ def test_a_stiffness_off_by_30_percent_is_named(tmp_path: Path) -> None:
     found = diagnosed(9624, tmp_path)
     assert {one.name for one in found.effects} == {"coulomb_asymmetry", "stiffness_deviation"}
     (stiffness,) = [one for one in found.effects if one.name == "stiffness_deviation"]
-    assert stiffness.parameters["factor"].value == pytest.approx(0.7, rel=0.02)
+    assert stiffness.parameters["factor"].value == pytest.approx(0.7, rel=VALUE)
 
 
 def test_a_lead_error_stands_once_a_stiffness_within_its_tolerance_is_denied(tmp_path: Path) -> None:
@@ -51,4 +54,4 @@ def test_a_lead_error_stands_once_a_stiffness_within_its_tolerance_is_denied(tmp
     found = diagnosed(700_959, tmp_path)
     (lead,) = found.effects
     assert lead.name == "lead_error_cumulative"
-    assert lead.parameters["slope"].value == pytest.approx(5.379e-9, rel=0.05)
+    assert lead.parameters["slope"].value == pytest.approx(5.379e-9, rel=VALUE)

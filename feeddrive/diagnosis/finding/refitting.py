@@ -111,10 +111,8 @@ def as_payload(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
     names = [effect.name for effect in found.effects]
     if StructuralMode.name not in names or Payload.name in names:
         return problem, found
-    place = names.index(StructuralMode.name)
-    mode = found.effects[place]
+    mode, rest = _apart(found, StructuralMode.name)
     payload = Payload.of(mass=number(mode.values["mass"]))
-    rest = (*found.effects[:place], *found.effects[place + 1 :])
     there, effects = said_by_effects(problem, (*rest, payload))
     other = refitted(there, fit(there, effects, iterations=JOINT_ITERATIONS))
     resonates = resonates_within(mode, max(e.edge for e in problem.evidence))
@@ -136,13 +134,17 @@ def as_force(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
     names = [effect.name for effect in found.effects]
     if PositionSpring.name not in names or ConstantForce.name in names:
         return problem, found
-    place = names.index(PositionSpring.name)
-    spring = found.effects[place]
+    spring, rest = _apart(found, PositionSpring.name)
     way = problem.plant.middle - number(spring.values["zero"])
     force = ConstantForce.of(force=number(spring.values["stiffness"]) * way)
-    rest = (*found.effects[:place], *found.effects[place + 1 :])
     other = refitted(problem, fit(problem, (*rest, force), iterations=JOINT_ITERATIONS))
     return other if odds_between(Standing(problem, found), Standing(*other), count) > 0 else (problem, found)
+
+
+def _apart(found: Fit, name: str) -> tuple[Effect, tuple[Effect, ...]]:
+    """The first effect of a name, and the others of a set."""
+    place = [effect.name for effect in found.effects].index(name)
+    return found.effects[place], (*found.effects[:place], *found.effects[place + 1 :])
 
 
 def where_friction_brakes(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
