@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.certainty.preferred import judged_apart
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.attempt import refuse_at_an_end
-from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.judging import judge as judge_of
 from feeddrive.diagnosis.judging import veto
 from feeddrive.diagnosis.judging.asked_of_fit import ends_reached
@@ -71,14 +72,23 @@ def test_real_one_stays_and_one_that_is_not_there_goes(rigid: Plant) -> None:
     found, _ = kept_of(rigid, Truth(ripple=0.01), RIPPLE, BOGUS, Stribeck.of(delta_force=0.2, velocity=0.02))
     (ripple,) = found.fit.effects
     assert ripple.values["amplitude"] == pytest.approx(0.01, rel=0.1)
-    assert list(found.impossible) == ["stribeck"]  # of the ripples one is named still
-    assert "data" in found.impossible["stribeck"] or "interval" in found.impossible["stribeck"]
+    assert list(found.denied) == ["stribeck"]  # of the ripples one is named still
+    assert "data" in found.denied["stribeck"] or "interval" in found.denied["stribeck"]
+
+
+def test_a_search_that_goes_on_asks_what_the_recordings_could_not_show_but_nothing_denied(rigid: Plant) -> None:
+    """A declared value is none to be named beside others within its tolerance, and may be beside what is left."""
+    problem, _, _ = prepared(rigid, [rigid_run("a", Truth(ripple=0.01))], [rigid_run("b", Truth())], 0.75)
+    begun = Search(problem, fit(problem, ()), (), (), {"torque_ripple": "not beside that"})
+    assert [one.name for one in search(problem, start=begun).fit.effects] == ["torque_ripple"]
+    denied = replace(begun, impossible={}, denied={"torque_ripple": "on the judged data it lowers nothing"})
+    assert "torque_ripple" not in [one.name for one in search(problem, start=denied).fit.effects]
 
 
 @pytest.mark.parametrize("effect", [BOGUS, Payload.of(mass=0.05), CoulombAsymmetry.of(delta_force=0.1)])
 def test_nothing_is_kept_of_a_recording_in_which_nothing_lacks(rigid: Plant, effect: Effect) -> None:
     found, _ = kept_of(rigid, Truth(seed=5), effect)
-    assert found.fit.effects == () and list(found.impossible) == [effect.name]
+    assert found.fit.effects == () and list(found.denied) == [effect.name]
 
 
 def test_a_refit_that_judged_motion_cannot_follow_leaves_the_others_as_they_were(
@@ -129,19 +139,19 @@ def test_name_denied_beside_what_was_lost_with_another_is_asked_again(rigid: Pla
     found = Search(problem, fit(problem, [warm, ripple]), (), (), {})
     judged = judging(found, evidence)
     first, _ = without_denied(found, judged, lambda other: judging(other, evidence))
-    assert first.fit.effects == () and list(first.impossible) == ["viscous_warmup", "torque_ripple"]
+    assert first.fit.effects == () and list(first.denied) == ["viscous_warmup", "torque_ripple"]
     kept, _ = settled_names(found, judged, lambda other: judging(other, evidence), lambda text: None)
     values = {effect.name: effect.values for effect in kept.fit.effects}
     assert values.keys() == {"friction_deviation", "torque_ripple"}
     # three deviations of an amplitude beside white noise in half of the rows, which the band leaves
     assert values["torque_ripple"]["amplitude"] == pytest.approx(2e-3, abs=3 * NOISE / math.sqrt(3000))
-    assert "viscous_warmup" in kept.impossible and "torque_ripple" not in kept.impossible
+    assert "viscous_warmup" in kept.denied and "torque_ripple" not in kept.denied
 
 
 def test_channel_made_worse_is_given_back(rigid: Plant) -> None:
     """A value that no fit has moved, and that is wrong: worse than declared, and gone."""
     found, judged = kept_of(rigid, Truth(), Payload.of(mass=15.0), iterations=0)
-    assert found.fit.effects == () and "payload" in found.impossible
+    assert found.fit.effects == () and "payload" in found.denied
     assert worse_by(found.problem, judged, "motor_torque") < 0
 
 
@@ -164,7 +174,7 @@ def test_sparing_asks_for_the_interval_still(rigid: Plant) -> None:
     problem, evidence, _ = prepared(rigid, [rigid_run("a", Truth(seed=5))], [rigid_run("b", Truth(), slow=1.3)], 0.75)
     found = Search(problem, fit(problem, [Payload.of(mass=0.05)]), (), (), {})
     kept, _ = without_denied(found, judging(found, evidence), lambda other: judging(other, evidence), ("payload",))
-    assert kept.fit.effects == () and "interval" in kept.impossible["payload"]
+    assert kept.fit.effects == () and "interval" in kept.denied["payload"]
 
 
 @pytest.mark.parametrize(("other", "gone"), [(0.006, "stribeck"), (0.05, "torque_ripple")], ids=["less", "more"])
@@ -323,4 +333,4 @@ def test_no_name_goes_for_what_fitted_values_do(tmp_path: Path, monkeypatch: pyt
     assert [effect.name for effect in kept.fit.effects] == ["lead_error_cumulative"]
     monkeypatch.setattr(veto, "not_worse_than_declared", lambda found, judged, judge: (found, judged))
     gone, _ = without_denied(found, judged, judge)
-    assert gone.fit.effects == () and "motor_torque" in gone.impossible["lead_error_cumulative"]
+    assert gone.fit.effects == () and "motor_torque" in gone.denied["lead_error_cumulative"]

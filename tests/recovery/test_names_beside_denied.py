@@ -27,10 +27,22 @@ def diagnosed(seed: int, tmp_path: Path) -> Diagnosis:
 def test_a_force_beside_friction_by_load_is_found_once_a_friction_of_all_speeds_is_denied(tmp_path: Path) -> None:
     """A Stribeck friction beyond all speeds stood for a declared friction: beside it the force was 700 N off."""
     found = diagnosed(9582, tmp_path)
-    force, friction = sorted(found.effects, key=lambda one: one.name)
+    force, level, friction = sorted(found.effects, key=lambda one: one.name)
     assert (force.name, friction.name) == ("constant_force", "load_dependent_friction")
     assert force.parameters["force"].value == pytest.approx(4480.0, rel=VALUE)
     assert friction.parameters["coefficient"].value == pytest.approx(0.0415, rel=VALUE)
+    # the guide rubs a third more than declared, which knows it to a fifth
+    assert level.name == "friction_deviation"
+    assert level.parameters["coulomb_factor"].value == pytest.approx(1.336, rel=VALUE)
+
+
+def test_a_declared_value_is_named_once_what_stood_for_it_is_denied(tmp_path: Path) -> None:
+    """A Stribeck friction beyond all speeds stood for twice the friction, and was denied with no name in its place."""
+    found = diagnosed(701_506, tmp_path)
+    asymmetry, friction = sorted(found.effects, key=lambda one: one.name)
+    assert (asymmetry.name, friction.name) == ("coulomb_asymmetry", "friction_deviation")
+    assert asymmetry.parameters["delta_force"].value == pytest.approx(27.39, rel=VALUE)
+    assert friction.parameters["coulomb_factor"].value == pytest.approx(1.995, rel=VALUE)
 
 
 def test_no_change_of_the_judged_recording_spares_a_name_that_it_does_without(tmp_path: Path) -> None:

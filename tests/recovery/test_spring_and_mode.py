@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.finding.refitting import as_payload
 from feeddrive.diagnosis.finding.scene import scene_of
+from feeddrive.diagnosis.finding.simpler_law import as_payload
 from feeddrive.diagnosis.finding.spring_law import odds_between
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem

@@ -26,7 +26,7 @@ from feeddrive.diagnosis.calibration.stated import coordinate_said, given_back, 
 from feeddrive.diagnosis.calibration.together import cost, fitted_together
 from feeddrive.diagnosis.calibration.value_slopes import ENOUGH, with_new_slopes, with_slopes
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
-from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND, SURE
 from feeddrive.diagnosis.motion.preparing import weighed_by
 from feeddrive.effects.base import Effect
@@ -198,27 +198,37 @@ def placed_by_scatter(problem: Problem, found: Fit) -> Known | None:
 
     One variance for all directions lets values that are alike to the recordings run far along what the noise makes of
     them, to where slopes and the encoder's weights say that it is they who are other. So they begin as declared, with
-    the weights of the machine that was declared.
+    the weights of the machine that was declared. Where one is so far off that no step leads there, and much is left,
+    they begin where it was found.
     """
     there = at_declared(problem)
     declared = there.machine(found.effects)
     there = replace(there, evidence=tuple(weighed_by(e, declared) for e in there.evidence))
-    effects, share, before, left = found.effects, 1.0, np.zeros(0), math.inf
+    known, left = _placed_from(there, found.effects)
+    likeliest = replace(problem, evidence=there.evidence)
+    if left > UNEXPLAINED * fit(likeliest, found.effects, iterations=0).squared_error:
+        known, _ = _placed_from(likeliest, found.effects)
+    return known
+
+
+def _placed_from(there: Problem, effects: Sequence[Effect]) -> tuple[Known | None, float]:
+    """What the recordings tell beside values placed by scatter, from those of a problem on, and what is left there."""
+    share, before, left = 1.0, np.zeros(0), math.inf
     for more in chain(range(PASSES, 0, -1), repeat(0)):
         there = with_slopes(there, effects)
         result = fit(there, effects)
         effects, known = result.effects, known_values(there, result)
         if known is None:
-            return None
+            return None, math.inf
         u, _ = known.likeliest({})
         step = np.array([known.c(i, float(one)) for i, one in enumerate(u)]) - known.at
         # one that still leaves less than half of what it left before is on its way: slopes there are of another machine
-        done = not more and (result.squared_error > 0.5 * left or problem.budget.is_spent)
+        done = not more and (result.squared_error > 0.5 * left or there.budget.is_spent)
         if np.max(np.abs(step), initial=0.0) < ENOUGH or done:
             break
         share, left = _share(share, before, step) if len(before) else 1.0, result.squared_error
         there, before = there.at_values(known.at + share * step), step
-    return known
+    return known, result.squared_error
 
 
 def _share(share: float, before: FloatArray, step: FloatArray) -> float:

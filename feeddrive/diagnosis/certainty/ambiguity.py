@@ -201,7 +201,7 @@ def _near(found: Search, place: int) -> list[Attempt]:
 
 def _is_free(found: Search, effect: Effect) -> bool:
     """Whether an effect can be put in: asked of these recordings, and not in yet."""
-    asked = {candidate.name for candidate in found.problem.predictor.candidates} - set(found.impossible)
+    asked = {candidate.name for candidate in found.problem.predictor.candidates} - set(found.reasons)
     return effect.name in asked and (effect.repeatable or effect.name not in {e.name for e in found.fit.effects})
 
 

@@ -33,7 +33,11 @@ catalogue knows either to that, but a scale shows it, and without its name it is
 
 LEAST_MASS_SHARE = 0.001
 """A mass over the declared table mass, what swings on it included, and an inertia over the declared one of its shaft: a
-scale and a torque in steps of a thousandth show no less. So of a torque that a delay moves, over the torque's swing."""
+scale and a torque in steps of a thousandth show no less. So of a torque that a delay moves, over the torque's swing.
+What swings on the table counts as at its resonance, where the table feels 1 / (2 damping) of its mass."""
+
+TINY = 1e-9
+"""In place of no damping [1]."""
 
 FORCE_KEYS = ("delta_force", "force", "peak")
 """Parameters that are forces at the table."""
@@ -51,7 +55,8 @@ def is_material(effect: Effect, plant: Plant) -> bool:
     if effect.name == "preload_loss" and values["ratio"] > 1 - LEAST_SOFTENING:
         return False
     if effect.name in ("structural_mode", "payload"):
-        return abs(values["mass"]) >= LEAST_MASS_SHARE * plant.chain.values["table_mass"]
+        resonance = max(0.5 / max(values.get("damping", 0.5), TINY), 1.0)
+        return abs(values["mass"]) * resonance >= LEAST_MASS_SHARE * plant.chain.values["table_mass"]
     if isinstance(effect, InertiaDeviation):
         return abs(values["inertia"]) >= LEAST_MASS_SHARE * declared_inertia(plant.chain.values, effect.place)
     if effect.name == "stiffness_deviation":

@@ -19,18 +19,13 @@ from feeddrive.diagnosis.calibration.stated import is_within_tolerance, said_by_
 from feeddrive.diagnosis.calibration.together import cost, fitted_together, stepped_together
 from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes, with_slopes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
-from feeddrive.diagnosis.finding.spring_law import TOLD
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between
 from feeddrive.diagnosis.motion.row_steps import in_told_steps
 from feeddrive.effects.base import Effect, number
-from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.chain.stiffness_deviation import WHOLE, StiffnessDeviation
-from feeddrive.effects.chain.structural_mode import StructuralMode, resonates_within
-from feeddrive.effects.source.constant_force import ConstantForce
-from feeddrive.effects.source.position_spring import PositionSpring
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 
 
@@ -94,57 +89,6 @@ def balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
             break
         problem, found = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
     return problem, found
-
-
-def as_payload(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
-    """A set with a payload where it has a mode, unless the mode is told from it, as surely as names are; else as it is.
-
-    A mode that does not resonate in the band is a payload of its mass, and what its form takes beside is the model's
-    error. Where the table's mass is fitted within its tolerance a payload is no candidate, so that the mode is there
-    compared with none.
-
-    Args:
-        problem: recordings.
-        found: the set.
-        count: candidates and starts that were tried.
-    """
-    names = [effect.name for effect in found.effects]
-    if StructuralMode.name not in names or Payload.name in names:
-        return problem, found
-    mode, rest = _apart(found, StructuralMode.name)
-    payload = Payload.of(mass=number(mode.values["mass"]))
-    there, effects = said_by_effects(problem, (*rest, payload))
-    other = refitted(there, fit(there, effects, iterations=JOINT_ITERATIONS))
-    resonates = resonates_within(mode, max(e.edge for e in problem.evidence))
-    told = resonates and odds_between(Standing(*other), Standing(problem, found), count) > TOLD
-    return (problem, found) if told else other
-
-
-def as_force(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
-    """A set with a constant force where it has a spring, where that is likelier; else as it is.
-
-    A spring is a force that also changes along the stroke, and near one no slope tells of a set without it: the force
-    of some thousand newtons that goes with it is too far.
-
-    Args:
-        problem: recordings.
-        found: the set.
-        count: candidates and starts that were tried.
-    """
-    names = [effect.name for effect in found.effects]
-    if PositionSpring.name not in names or ConstantForce.name in names:
-        return problem, found
-    spring, rest = _apart(found, PositionSpring.name)
-    way = problem.plant.middle - number(spring.values["zero"])
-    force = ConstantForce.of(force=number(spring.values["stiffness"]) * way)
-    other = refitted(problem, fit(problem, (*rest, force), iterations=JOINT_ITERATIONS))
-    return other if odds_between(Standing(problem, found), Standing(*other), count) > 0 else (problem, found)
-
-
-def _apart(found: Fit, name: str) -> tuple[Effect, tuple[Effect, ...]]:
-    """The first effect of a name, and the others of a set."""
-    place = [effect.name for effect in found.effects].index(name)
-    return found.effects[place], (*found.effects[:place], *found.effects[place + 1 :])
 
 
 def where_friction_brakes(problem: Problem, found: Fit) -> tuple[Problem, Fit]:

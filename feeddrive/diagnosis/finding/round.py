@@ -50,6 +50,7 @@ def one_round(
         if reason:
             impossible[candidate.name] = reason
         else:
+            impossible.pop(candidate.name, None)  # beside another set it may have been
             ready.append(candidate)
     with ThreadPoolExecutor(WORKERS) as pool:
         groups = list(pool.map(begun, ready))

@@ -24,8 +24,6 @@ from feeddrive.diagnosis.finding.materiality import is_material_here
 from feeddrive.diagnosis.finding.members import Member, members_of
 from feeddrive.diagnosis.finding.open_map import open_curves, with_curves_of
 from feeddrive.diagnosis.finding.refitting import (
-    as_force,
-    as_payload,
     at_rest,
     balanced,
     begun_as_declared,
@@ -40,6 +38,7 @@ from feeddrive.diagnosis.finding.refitting import (
 )
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
+from feeddrive.diagnosis.finding.simpler_law import as_force, as_payload, level_everywhere
 from feeddrive.diagnosis.finding.spring_law import soft_everywhere
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
@@ -72,12 +71,13 @@ class Search:
         fit: of the effects found.
         trials: every candidate of every round.
         rounds: the same as fitted, the best first.
-        impossible: candidate to why the recordings cannot show it.
+        impossible: candidate to why the recordings cannot show it beside what was found.
         near: effects that may come beside those found, the likeliest first.
         begun: problem and fit that the search began with; None for one that is made of a fit.
         tried: most candidates and starts that a round tried; 0 where there was none.
         opened: problem and fit with the curves of its laws open; None where none is.
         asked: what was asked of the judged recordings beside it and beside sets made of it (`recordings.compared`).
+        denied: names that were met and are not reported, to why; a search that goes on from this one asks for none.
     """
 
     problem: Problem
@@ -90,6 +90,12 @@ class Search:
     tried: int = 0
     opened: tuple[Problem, Fit] | None = None
     asked: list[Any] = field(default_factory=list, compare=False)
+    denied: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def reasons(self) -> dict[str, str]:
+        """Candidate to why it is not reported, where the recordings cannot show it or it was met and denied."""
+        return {**self.impossible, **self.denied}
 
     @property
     def count(self) -> int:
@@ -113,7 +119,7 @@ def search(
     Args:
         problem: declared plant and recordings.
         progress: called with a line that says what is going on.
-        start: a search to go on from, without the names that it says are impossible.
+        start: a search to go on from, without the names that it denies.
 
     Returns:
         The effects found, fitted together, and the ledger of the search.
@@ -124,8 +130,8 @@ def search(
     begun = (problem, found) if start is None or start.begun is None else start.begun
     trials: list[Trial] = [*start.trials] if start is not None else []
     rounds: list[tuple[Attempt, ...]] = [*start.rounds] if start is not None else []
-    denied = {**start.impossible} if start is not None else {}
-    impossible: dict[str, str] = {**denied}
+    denied = {**start.denied} if start is not None else {}
+    impossible: dict[str, str] = {}
     met: set[tuple[Member, ...]] = set()
     forms: set[tuple[tuple[Member, ...], tuple[str, ...]] | None] = set()
     near: tuple[Near, ...] = ()
@@ -163,10 +169,13 @@ def search(
                 met.add(members_of(found.effects))
                 continue
         # nothing likelier is near, or what was met: only each other's place is taken, or other values stand beside it
-        others = [*filter(is_another, found.effects), *soft_everywhere(problem, found)]
+        others = [
+            *filter(is_another, found.effects),
+            *soft_everywhere(problem, found),
+            *level_everywhere(problem, found),
+        ]
         if others:  # the search goes on with the name that the law has run to
             denied |= dict.fromkeys((effect.name for effect in others), ANOTHER)
-            impossible |= denied
             softer = None if StiffnessDeviation.name in denied else with_softer_spring(problem, found, others)
             problem, found = softer or refitted(problem, fit(problem, _without(found, others)))
         moved = None if others else at_likelier_place(problem, found, asked.now.count)
@@ -200,9 +209,9 @@ def search(
         elif not others:
             break
     opened, problem, found, small = _ended(problem, found)
-    impossible |= dict.fromkeys((one.name for one in small), SMALL)
+    denied |= dict.fromkeys((one.name for one in small), SMALL)
     found = with_usual_sizes(problem, found)
-    return Search(problem, found, tuple(trials), tuple(rounds), impossible, near, begun, tried, opened)
+    return Search(problem, found, tuple(trials), tuple(rounds), impossible, near, begun, tried, opened, denied=denied)
 
 
 def _asked(

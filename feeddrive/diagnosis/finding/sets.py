@@ -29,8 +29,8 @@ from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_c
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import (
-    DISCREPANCY,
     Standing,
+    discrepancy,
     log_odds,
     log_prior_of_size,
     log_volume,
@@ -283,7 +283,8 @@ class _Columns:
         less = min(before, before - excess)
         if square <= 0 or less <= 0:
             return Neighbour(dropped, added, -np.inf)
-        variance = float(taken @ self.scatter @ taken) / square * less / before + DISCREPANCY * less
+        variance = float(taken @ self.scatter @ taken) / square * less / before
+        variance += discrepancy(self.problem, less)
         after = self.cost - self.cost_taken @ taken
         cheaper = float(self.cost @ self.cost - after @ after)
         speaks = 0.5 * (excess - cheaper) / max(variance, TINY) + 0.5 * cheaper / self.unit

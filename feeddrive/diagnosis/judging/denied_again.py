@@ -46,13 +46,13 @@ def settled_names(
     if not overtaken or budget.skips("names denied beside what is no longer named"):
         return other
     progress(f"asking again beside what is named now: {', '.join(overtaken)}")
-    reasons = {name: why for name, why in other[0].impossible.items() if name not in overtaken}
-    more = _gone_on(replace(other[0], impossible=reasons), judge, progress)
+    reasons = {name: why for name, why in other[0].denied.items() if name not in overtaken}
+    more = _gone_on(replace(other[0], denied=reasons), judge, progress)
     if more is None:
         return other
     names = {effect.name for effect in more[0].fit.effects}
-    denied = {name: why for name, why in other[0].impossible.items() if name not in names}
-    return replace(more[0], impossible={**denied, **more[0].impossible}), more[1]
+    denied = {name: why for name, why in other[0].denied.items() if name not in names}
+    return replace(more[0], denied={**denied, **more[0].denied}), more[1]
 
 
 def _gone_on(kept: Search, judge: Callable[[Search], list[Judged]], progress: Callable[[str], None]) -> Found | None:
@@ -67,4 +67,4 @@ def _gone_on(kept: Search, judge: Callable[[Search], list[Judged]], progress: Ca
 
 def _denied_later(found: Search, kept: Search) -> list[str]:
     """Names that were denied once another one had gone, in their order."""
-    return [name for name in kept.impossible if name not in found.impossible][1:]
+    return [name for name in kept.denied if name not in found.denied][1:]

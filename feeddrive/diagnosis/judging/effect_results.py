@@ -89,8 +89,8 @@ def refused_effects(found: Search) -> tuple[RefusedEffect, ...]:
     for candidate in found.problem.predictor.candidates:
         if candidate.name in taken:
             continue
-        if candidate.name in found.impossible:
-            refused.append(RefusedEffect(candidate.name, found.impossible[candidate.name]))
+        if candidate.name in found.reasons:
+            refused.append(RefusedEffect(candidate.name, found.reasons[candidate.name]))
         elif candidate.name in best:
             trial = best[candidate.name]
             refused.append(RefusedEffect(candidate.name, _why_not(trial, found.trials)))

@@ -99,11 +99,11 @@ def without_denied(
         gone = effects[denied.place]
         rest = _without_lost_shifts([effect for i, effect in enumerate(effects) if i != denied.place])
         still_named = any(effect.name == gone.name for effect in rest)
-        reasons = found.impossible if still_named else {**found.impossible, gone.name: denied.reason}
+        reasons = found.denied if still_named else {**found.denied, gone.name: denied.reason}
         problem = without_effects(found.problem, [gone], rest)
         # the declared values were fitted beside what is gone; one step rarely takes them to where they are without it
         problem, fitted = at_rest(*refitted(problem, fit(problem, rest)))
-        found = replace(found, problem=problem, fit=fitted, impossible=reasons)
+        found = replace(found, problem=problem, fit=fitted, denied=reasons)
         judged = judge(found)
 
 

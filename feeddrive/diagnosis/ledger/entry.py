@@ -27,8 +27,8 @@ def kept_of(found: Search, known: Certainty) -> Kept:
             effect, comparison = attempt.fit.effects[-1], attempt.comparison
             is_taken = attempt.name in taken.split(" with ")
             reason = _reason(comparison, is_taken, taken)
-            if is_taken and attempt.name in found.impossible:
-                reason = f"taken, and refused in the end: {found.impossible[attempt.name]}"
+            if is_taken and attempt.name in found.reasons:
+                reason = f"taken, and refused in the end: {found.reasons[attempt.name]}"
             tried.append({
                 "round": number, "effect": attempt.name, "port": str(effect.port), "place": effect.place,
                 "values": dict(effect.values), "gain": comparison.gain, "standard_error": comparison.standard_error,

@@ -69,8 +69,9 @@ FIXED = {
 FORM = {"centre", "damping", "start", "break_away"}
 """Linear parameters that choose the form of a law, not its size."""
 
-LAWS_AT_ENDS = {("presliding", "break_away")}
-"""Shares at whose ends a law is a law as any other: a bristle that gives way little by little, or at once."""
+LAWS_AT_ENDS = {("presliding", "break_away"), ("friction_deviation", "viscous_factor")}
+"""Shares at whose ends a law is a law as any other: a bristle that gives way little by little, or at once; Coulomb
+friction alone."""
 
 FACTORS = {"factor", "coulomb_factor", "viscous_factor", "ratio"}
 """Parameters that are 1 where the effect is absent; other sizes are 0."""

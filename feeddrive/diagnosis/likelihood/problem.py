@@ -161,6 +161,16 @@ class Problem:
             return self  # as it is weighed, but for a few
         return self.weighed({name: one / least for name, one in left.items() if one * LEVEL > least})
 
+    @cached_property
+    def noise_square(self) -> float:
+        """What the noise alone is expected to leave of the squared residual, each channel weighed as it is."""
+        parts = [
+            e.kept * float(e.thinned(e.fit_rows).sum()) / e.left.get(name, 1.0) ** 2
+            for e in self.evidence
+            for name in e.channels
+        ]
+        return sum(parts) + len(self.numbers)
+
     def weighed(self, left: dict[str, float]) -> Problem:
         """The problem with other factors on the noise of channels."""
         if all(e.left == left for e in self.evidence):

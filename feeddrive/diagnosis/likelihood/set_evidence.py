@@ -1,7 +1,7 @@
 """Evidence of a set of effects: what the data say for it, less what its freedom and its luck among many cost.
 
     log E(S) = -|r_S|² / 2c + Σ log p(θ_i) + k/2 log 2π - 1/2 log |H/c + W⁻²| + log p(S)
-    c = d' Γ d / d'd + δ |r|² + v
+    c = d' Γ d / d'd + δ max(|r|² - n, n / 10) + v
     p(S) = B(1 + |S|, 2K - |S|) / B(1, K)
 
 | symbol | meaning | unit |
@@ -13,7 +13,7 @@
 | H | J'J of the slopes of the prediction with θ | 1 |
 | d | difference of the residuals of two sets that are compared | 1 |
 | Γ | covariance of the residual that is less: its spectrum, its level where d is large, sums over blocks | 1 |
-| δ | `DISCREPANCY` | 1 |
+| δ, n | `DISCREPANCY`, of what is left above n, which the noise leaves, known to a tenth (`LEVEL_KNOWN`) | 1 |
 | v | what an encoder's steps alone give along d (`encoder_along`) | 1 |
 | K | candidates and starts that were tried for one further effect | 1 |
 
@@ -75,8 +75,12 @@ TINY = 1e-9
 """In place of a width of nothing over its size [1]: no data tell a femtometre from none."""
 
 DISCREPANCY = 2e-4
-"""Share of the squared residual that a law other than ours leaves along any one direction (variance). The luckiest of
-some hundred candidates, at 2.2 deviations, then takes 0.1 % away: as much as it does of recordings with nothing in."""
+"""Share of the squared residual above the noise that a law other than ours leaves along any one direction (variance).
+The luckiest of some hundred candidates, at 2.2 deviations, then takes 0.1 % of it away."""
+
+LEVEL_KNOWN = 0.1
+"""Share to which the square of the noise is known, from the quietest tenth of the blocks: a law that leaves less is not
+seen to leave anything, and is granted as much."""
 
 
 def log_prior_of_size(size: int, count: int) -> float:
@@ -222,7 +226,13 @@ def variance_along(problem: Problem, left: Fit, first: Fit, second: Fit) -> floa
         return 1.0
     noise = float(score_variances(problem, left.residual, difference[:, None])[0])
     missed = float(model @ difference**2) / 1.96**2
-    return (noise + missed) / square + DISCREPANCY * left.squared_error
+    return (noise + missed) / square + discrepancy(problem, left.squared_error)
+
+
+def discrepancy(problem: Problem, square: float) -> float:
+    """Variance along any one direction of what a law other than ours leaves of a squared residual."""
+    noise = problem.noise_square
+    return DISCREPANCY * max(square - noise, LEVEL_KNOWN * noise)
 
 
 @dataclass(frozen=True)

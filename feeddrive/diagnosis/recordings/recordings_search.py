@@ -118,7 +118,7 @@ def _continued(problem: Problem, start: Sequence[Effect], progress: Callable[[st
     again = replace(again, problem=needed.problem, fit=needed.fit)
     if again.problem.plain_error(again.fit.effects) < UNEXPLAINED:
         every = dict.fromkeys((one.name for one in problem.predictor.candidates), EXPLAINED)
-        return Searched(Search(again.problem, again.fit, (), (), every), again)
+        return Searched(Search(again.problem, again.fit, (), (), {}, denied=every), again)
     more = _searched(needed.problem, again, progress)
     if not more.fit.effects:
         return Searched(replace(more, problem=again.problem, fit=again.fit), again)

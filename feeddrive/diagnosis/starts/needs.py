@@ -15,9 +15,6 @@ Need = Callable[[Scene], str]
 LEAST_TURNS = 2.0
 """Revolutions that must be travelled before a periodic effect can be distinguished from a trend."""
 
-LEAST_SECONDS = 8.0
-"""Duration [s] below which a slow change of the machine cannot be distinguished from the motion."""
-
 LEAST_STROKE_TURNS = 1.0
 """Stroke in revolutions of the screw from which position and angle are different things."""
 
@@ -116,10 +113,8 @@ def stiffness_along_stroke(scene: Scene) -> str:
 
 
 def duration(scene: Scene) -> str:
-    """What changes slowly needs time."""
-    evidence = scene.problem.evidence[scene.longest]
-    seconds = float(evidence.fit_rows.sum()) * evidence.recording.sample_time
-    return "" if seconds >= LEAST_SECONDS else f"the recording lasts {seconds:.2g} s; it needs {LEAST_SECONDS:g} s"
+    """What changes slowly is told from the motion where the same motion comes again."""
+    return reversals(scene)
 
 
 def screw_drag(scene: Scene) -> str:

@@ -204,7 +204,7 @@ def without_stand_ins(found: Search, judged: Sequence[Judged]) -> Search:
         found,
         problem=problem,
         fit=fit(problem, kept, iterations=0),
-        impossible={**found.impossible, **dict.fromkeys(names, reason)},
+        denied={**found.denied, **dict.fromkeys(names, reason)},
     )
 
 

@@ -28,7 +28,7 @@ How a case is made and judged:
 
 - Two axes, `bench` and `light`, and for heat one rig under two programmes, `warm-up` and `short warm-up`; sensors with
   the declared noise and with three times as much. Recordings for fitting and judging of 12 s and 7.6 s (`bench`), 6.8 s
-  and 6 s (`light`; 10 s and 6 s for effects that settle with time, which are refused on less than 8 s).
+  and 6 s (`light`; 10 s and 6 s for effects that settle with time).
 - Sizes: 2 %, 10 % and 50 % is what the true plant takes away from the error (rms) of the declared one on the recording
   that is judged, on the channel where it takes away most. `service` is what a service engineer would meet, mostly much
   larger. {presliding} cannot be made small and is planted at half, once and twice the size of service.

@@ -1,0 +1,98 @@
+"""A law that the recordings do not tell from a simpler one: the simpler stands for both.
+
+Near a law that has run far from where it is none no slope tells of the simpler one: a spring has a force of some
+thousand newtons with it, a mode beyond the band a mass. So the simpler one is fitted in its place, and odds decide. A
+Stribeck friction that falls beyond all speeds is a level, which is a declared value and fitted in every set.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from feeddrive.diagnosis.calibration.stated import said_by_effects
+from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
+from feeddrive.diagnosis.finding.refitting import refitted
+from feeddrive.diagnosis.finding.scene import scene_of
+from feeddrive.diagnosis.finding.spring_law import BEYOND, TOLD
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, variance_along
+from feeddrive.effects.base import Effect, number
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.chain.structural_mode import StructuralMode, resonates_within
+from feeddrive.effects.friction.stribeck import Stribeck
+from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.source.position_spring import PositionSpring
+
+
+def as_payload(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
+    """A set with a payload where it has a mode, unless the mode is told from it, as surely as names are; else as it is.
+
+    A mode that does not resonate in the band is a payload of its mass, and what its form takes beside is the model's
+    error. Where the table's mass is fitted within its tolerance a payload is no candidate, so that the mode is there
+    compared with none.
+
+    Args:
+        problem: recordings.
+        found: the set.
+        count: candidates and starts that were tried.
+    """
+    names = [effect.name for effect in found.effects]
+    if StructuralMode.name not in names or Payload.name in names:
+        return problem, found
+    mode, rest = _apart(found, StructuralMode.name)
+    payload = Payload.of(mass=number(mode.values["mass"]))
+    there, effects = said_by_effects(problem, (*rest, payload))
+    other = refitted(there, fit(there, effects, iterations=JOINT_ITERATIONS))
+    resonates = resonates_within(mode, max(e.edge for e in problem.evidence))
+    told = resonates and odds_between(Standing(*other), Standing(problem, found), count) > TOLD
+    return (problem, found) if told else other
+
+
+def as_force(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
+    """A set with a constant force where it has a spring, where that is likelier; else as it is.
+
+    A spring is a force that also changes along the stroke, and near one no slope tells of a set without it: the force
+    of some thousand newtons that goes with it is too far.
+
+    Args:
+        problem: recordings.
+        found: the set.
+        count: candidates and starts that were tried.
+    """
+    names = [effect.name for effect in found.effects]
+    if PositionSpring.name not in names or ConstantForce.name in names:
+        return problem, found
+    spring, rest = _apart(found, PositionSpring.name)
+    way = problem.plant.middle - number(spring.values["zero"])
+    force = ConstantForce.of(force=number(spring.values["stiffness"]) * way)
+    other = refitted(problem, fit(problem, (*rest, force), iterations=JOINT_ITERATIONS))
+    return other if odds_between(Standing(problem, found), Standing(*other), count) > 0 else (problem, found)
+
+
+def level_everywhere(problem: Problem, found: Fit) -> list[Effect]:
+    """Stribeck frictions of a set whose fall no recorded speed tells: each is another level of friction.
+
+    The fall is not told where one far beyond every speed leaves as much as the fitted one does.
+    """
+    result: list[Effect] = []
+    for place, effect in enumerate(found.effects):
+        if not isinstance(effect, Stribeck):
+            continue
+        fastest = max(float(np.max(np.abs(run.table_velocity))) for run in scene_of(problem, found.effects).runs)
+        velocity = effect.parameter("velocity")
+        if number(effect.values["velocity"]) < min(fastest, velocity.maximum):
+            continue
+        beyond = effect.with_values(velocity=min(BEYOND * fastest, velocity.maximum))
+        rest = (*found.effects[:place], beyond, *found.effects[place + 1 :])
+        flat = fit(problem, rest, iterations=JOINT_ITERATIONS)
+        left = min(flat, found, key=lambda one: one.squared_error)
+        if flat.squared_error - found.squared_error < 2 * TOLD * variance_along(problem, left, found, flat):
+            result.append(effect)
+    return result
+
+
+def _apart(found: Fit, name: str) -> tuple[Effect, tuple[Effect, ...]]:
+    """The first effect of a name, and the others of a set."""
+    place = [effect.name for effect in found.effects].index(name)
+    return found.effects[place], (*found.effects[:place], *found.effects[place + 1 :])

@@ -1,0 +1,41 @@
+"""A law that has run to where it is a simpler one is told to be that; one that the recordings tell is not."""
+
+from __future__ import annotations
+
+import pytest
+
+from feeddrive.diagnosis.finding.scene import scene_of
+from feeddrive.diagnosis.finding.simpler_law import level_everywhere
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
+from feeddrive.effects.base import Effect, Port
+from feeddrive.effects.friction.friction_deviation import FrictionDeviation
+from feeddrive.effects.friction.stribeck import Stribeck
+from tests.recovery.drawn import drawn
+from tests.recovery.planted import axis_plant, pair
+
+
+def bench_with(effect: Effect) -> Problem:
+    """The bench's recording, drawn anew with an effect in it."""
+    plant = axis_plant("bench")
+    evidence = prepare(pair("bench", "null")[0], plant, 1.0)
+    return Problem(plant, (drawn(plant, evidence, [effect], 1),), AxisPredictor())
+
+
+@pytest.mark.parametrize("times", [1.5, 3.0])
+def test_a_stribeck_friction_that_falls_beyond_every_speed_is_a_level(times: float) -> None:
+    problem = bench_with(FrictionDeviation.of(Port.TABLE, coulomb_factor=1.6, viscous_factor=1.0))
+    fastest = max(abs(run.table_velocity).max() for run in scene_of(problem, ()).runs)
+    found = fit(problem, (Stribeck.of(delta_force=10.0, velocity=times * fastest),))
+    assert level_everywhere(problem, found) == list(found.effects)
+
+
+@pytest.mark.parametrize("velocity", [0.02, 0.45])
+def test_a_stribeck_friction_that_the_speeds_tell_is_none(velocity: float) -> None:
+    """One among the speeds, and one beyond the greatest of 0.3 m/s, where a third of it has fallen."""
+    law = Stribeck.of(delta_force=10.0, velocity=velocity)
+    problem = bench_with(law)
+    found = fit(problem, (law,))
+    assert level_everywhere(problem, found) == []
