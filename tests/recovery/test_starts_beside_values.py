@@ -10,7 +10,7 @@ from feeddrive.diagnosis.finding.candidates import CANDIDATES
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.preparation import prepared
-from feeddrive.diagnosis.starts import mode
+from feeddrive.diagnosis.starts import mode, transmission_starts
 from feeddrive.effects.base import number
 from tests.generator import effects as planted
 from tests.generator import recording_pair
@@ -46,3 +46,12 @@ def test_a_stribeck_rise_is_started_in_its_own_size(rise: float, velocity: float
     (attempt,) = started(scene_of(problem, ()), candidate)
     # velocities that are tried are a factor of three apart: the next one makes up for its distance by the size
     assert number(attempt.fit.effects[-1].values["delta_force"]) == pytest.approx(rise, rel=0.25)
+
+
+@pytest.mark.parametrize("force", [2.0, 10.0])
+def test_a_loss_of_preload_is_read_off_where_the_stiffness_has_taken_what_it_is_under_load(force: float) -> None:
+    problem = calibrated_without(planted.PreloadLoss(ratio=0.3, force=force))
+    ((start,),) = transmission_starts.preload_loss(scene_of(problem, ()))
+    # below the friction of 60 N force and ratio say one lag at every stop, b F1, whose grid has steps of a third
+    lag = (1 / number(start.values["ratio"]) - 1) * number(start.values["force"])
+    assert lag == pytest.approx((1 / 0.3 - 1) * force, rel=0.35)
