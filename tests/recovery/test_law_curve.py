@@ -45,7 +45,7 @@ def asked(problem: Problem, first: str, second: str) -> tuple[Problem | None, Fi
     """The problem with the curve of the first law open, where that is likelier than the second; and the first alone."""
     alone = fit(problem, [start(first)])
     both = fit(problem, [*alone.effects, start(second)])
-    odds, opened = likeliest_curve(problem, alone, COUNT)
+    (odds, *_), opened = likeliest_curve(problem, alone, COUNT)
     return opened if odds > log_odds(problem, alone, both, COUNT) else None, alone
 
 
@@ -94,7 +94,7 @@ def test_a_second_effect_is_no_curve_of_the_first(planted: tuple[Planted, ...], 
 def test_the_curve_of_a_law_is_asked_before_a_set_that_lacks_the_law() -> None:
     problem = problem_of(Relative(ViscousAsymmetry(100.0), "root", POWER))
     alone, others = (fit(problem, [*map(start, names)]) for names in (["viscous_asymmetry"], ["coulomb_asymmetry"]))
-    odds, _ = likeliest_curve(problem, alone, COUNT)
+    (odds, *_), _ = likeliest_curve(problem, alone, COUNT)
     fewer = Taken(problem, others, "coulomb_asymmetry", 0.5 * odds)
     opened = of_its_own_form(problem, alone, fewer, COUNT)
     assert opened is not None and opened[0].evidence[0].curves.keys() == {"viscous_asymmetry"}
@@ -107,7 +107,7 @@ def test_a_curve_is_taken_that_leaves_more_than_noise_where_the_likeliest_name_l
     """A second, undeclared effect keeps every set from leaving noise alone."""
     problem = problem_of(Relative(ViscousAsymmetry(100.0), "root", POWER), TorqueRipple(0.06, 3.0, 0.3))
     alone, others = (fit(problem, [*map(start, names)]) for names in (["viscous_asymmetry"], ["coulomb_asymmetry"]))
-    odds, _ = likeliest_curve(problem, alone, COUNT)
+    (odds, *_), _ = likeliest_curve(problem, alone, COUNT)
     opened = of_its_own_form(problem, alone, Taken(problem, others, "coulomb_asymmetry", 0.5 * odds), COUNT)
     assert opened is not None
     left = opened[0].plain_error(opened[1].effects)

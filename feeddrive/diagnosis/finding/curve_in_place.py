@@ -15,6 +15,7 @@ from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.likelier import Taken
 from feeddrive.diagnosis.finding.members import member, members_of
 from feeddrive.diagnosis.finding.open_map import (
+    OfNoName,
     likeliest_curve,
     log_odds_of_map,
     open_curves,
@@ -27,7 +28,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.law_curve import has_curve
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, log_odds, odds_between
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, log_odds, log_prior_of_size, odds_between
 from feeddrive.diagnosis.motion.predictability import has_play
 
 TURNS = 3
@@ -57,30 +58,41 @@ def of_its_own_form(problem: Problem, found: Fit, taken: Taken, count: int) -> t
     stays = members_of(taken.fit.effects)
     if not has_curve([effect for effect in found.effects if member(effect) not in stays]):
         return None
-    odds, opened = likeliest_curve(problem, found, count)
-    if odds <= taken.odds:
+    curve, opened = likeliest_curve(problem, found, count)
+    if curve.odds <= taken.odds:
         return None
     there = fit(opened, found.effects, iterations=JOINT_ITERATIONS)
     return (opened, there) if _leaves_less(Standing(opened, there), Standing(taken.problem, taken.fit)) else None
 
 
 def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
-    """A likelier set without one or all names that it adds, where the curve of another of its laws is likelier."""
+    """A likelier set without one or all names that it adds, where the curve of another of its laws is likelier.
+
+    Of several the likeliest, over one variance: what is left beside a law far from its own form has another colour than
+    beside one that is near, and odds over either are none between the two.
+    """
     effects, added = taken.fit.effects, len(taken.names)
     problem = with_curves_of(taken.problem, effects)
-    best, chosen = 0.0, None
+    able: list[tuple[OfNoName, tuple[Problem, Fit]]] = []
     first = len(effects) - added
     singly = [[place] for place in range(first, len(effects))]
     for gone in singly if added == 1 else [*singly, list(range(first, len(effects)))]:
         rest = [effect for i, effect in enumerate(effects) if i not in gone]
         if has_curve(rest) and not has_play([effects[i] for i in gone]):
             without = fit(problem, rest, iterations=JOINT_ITERATIONS)
-            odds, opened = likeliest_curve(problem, without, count)
-            odds -= log_odds(problem, without, taken.fit, count)
+            curve, opened = likeliest_curve(problem, without, count)
+            likelier = curve.odds > log_odds(problem, without, taken.fit, count)
             there = fit(opened, rest, iterations=JOINT_ITERATIONS)
-            if odds > best and _leaves_less(Standing(opened, there), Standing(taken.problem, taken.fit)):
-                best, chosen = odds, (opened, without)
-    return chosen
+            if likelier and _leaves_less(Standing(opened, there), Standing(taken.problem, taken.fit)):
+                able.append((curve, (opened, without)))
+    if not able:
+        return None
+    variance = min((curve for curve, _ in able), key=lambda one: one.left).variance
+
+    def unlikeliness(one: tuple[OfNoName, tuple[Problem, Fit]]) -> float:
+        return 0.5 * one[0].left / variance - log_prior_of_size(len(one[1][1].effects), count)
+
+    return min(able, key=unlikeliness)[1]
 
 
 def curve_of_value(
@@ -92,8 +104,8 @@ def curve_of_value(
     """
     if not has_curve(found.effects):
         return None
-    odds, opened = likeliest_curve(problem, found, count)
-    if odds <= max(odds_between(Standing(problem, found), Standing(*beyond[:2]), count), 0.0):
+    curve, opened = likeliest_curve(problem, found, count)
+    if curve.odds <= max(odds_between(Standing(problem, found), Standing(*beyond[:2]), count), 0.0):
         return None
     there = fit(opened, found.effects, iterations=JOINT_ITERATIONS)
     return with_its_curves(opened, there) if _leaves_less(Standing(opened, there), Standing(*beyond[:2])) else None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,23 @@ from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray
 
 
+class OfNoName(NamedTuple):
+    """Columns of no name beside a set.
+
+    Attributes:
+        odds: logarithm of the odds for them; minus infinity where there are none.
+        left: squared error beside them, with what their coordinates cost.
+        variance: c, that both are over.
+    """
+
+    odds: float
+    left: float
+    variance: float
+
+
+NONE = OfNoName(float("-inf"), float("inf"), 1.0)
+
+
 def log_odds_of_map(problem: Problem, found: Fit, count: int) -> float:
     """Logarithm of the odds for a lead map beside a set; minus infinity where no stroke shows one, or it is open.
 
@@ -26,10 +44,10 @@ def log_odds_of_map(problem: Problem, found: Fit, count: int) -> float:
     """
     if any(e.open_map for e in problem.evidence):
         return float("-inf")
-    return _log_odds(problem, found, count, {e: e.map_parts for e in problem.evidence})
+    return _of_no_name(problem, found, count, {e: e.map_parts for e in problem.evidence}).odds
 
 
-def likeliest_curve(problem: Problem, found: Fit, count: int) -> tuple[float, Problem]:
+def likeliest_curve(problem: Problem, found: Fit, count: int) -> tuple[OfNoName, Problem]:
     """The problem without what the other forms of a law of a set may make of it, the law for which the odds are best.
 
     Args:
@@ -38,17 +56,17 @@ def likeliest_curve(problem: Problem, found: Fit, count: int) -> tuple[float, Pr
         count: candidates and starts that were tried for a name.
 
     Returns:
-        Logarithm of the odds for the curve, minus infinity where no law has one that is not open; and the problem.
+        The curve, of no odds where no law has one that is not open; and the problem.
     """
-    best, chosen = float("-inf"), problem
+    best, chosen = NONE, problem
     for place, effect in enumerate(found.effects):
         if any(effect.name in e.curves for e in problem.evidence):
             continue
         parts = law_curves(problem, found.effects, place)
-        odds = _log_odds(problem, found, count, parts)
-        if odds > best:
+        curve = _of_no_name(problem, found, count, parts)
+        if curve.odds > best.odds:
             opened = (e.with_curves({**e.curves, effect.name: parts[e]}) for e in problem.evidence)
-            best, chosen = odds, replace(problem, evidence=tuple(opened))
+            best, chosen = curve, replace(problem, evidence=tuple(opened))
     return best, chosen
 
 
@@ -78,7 +96,7 @@ def log_odds_of_curves(problem: Problem, found: Fit, count: int, curved: Problem
         e: [part for name, curve in its.curves.items() if name not in e.curves for part in curve]
         for e, its in zip(problem.evidence, curved.evidence, strict=True)
     }
-    return _log_odds(problem, found, count, parts)
+    return _of_no_name(problem, found, count, parts).odds
 
 
 def open_curves(problem: Problem) -> tuple[str, ...]:
@@ -95,10 +113,10 @@ def with_curves_of(problem: Problem, effects: Sequence[Effect]) -> Problem:
     return replace(problem, evidence=tuple(e.with_curves(one) for e, one in zip(problem.evidence, kept, strict=True)))
 
 
-def _log_odds(
+def _of_no_name(
     problem: Problem, found: Fit, count: int, parts_of: Mapping[Evidence, Sequence[dict[str, FloatArray]]]
-) -> float:
-    """Logarithm of the odds for columns of no name beside a set; minus infinity where there are none.
+) -> OfNoName:
+    """Columns of no name beside a set.
 
     They are linear in their coordinates, of size one: one step from the set, with all that the set may do, is exact as
     far as the set is straight. Source: `likelihood.set_evidence`, with a normal prior.
@@ -112,7 +130,7 @@ def _log_odds(
             parts.append(column if problem.whitener is None else problem.whitener.applied(column))
         first += size
     if not parts:
-        return float("-inf")
+        return NONE
     columns = np.column_stack(parts)
     own = found.jacobian.shape[1]
     wide = np.column_stack([found.jacobian, columns]) if own else columns
@@ -125,5 +143,6 @@ def _log_odds(
     volumes = [np.linalg.slogdet(j.T @ j / variance + np.eye(j.shape[1]))[1] for j in (found.jacobian, wide)]
     size = len(found.effects)
     more = log_prior_of_size(size + 1, count) - log_prior_of_size(size, count)
-    excess = found.squared_error - float(least @ least)
-    return float(0.5 * excess / variance - 0.5 * (volumes[1] - volumes[0]) + more)
+    left = float(least @ least)
+    odds = 0.5 * (found.squared_error - left) / variance - 0.5 * (volumes[1] - volumes[0]) + more
+    return OfNoName(float(odds), left, variance)

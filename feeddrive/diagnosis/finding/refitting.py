@@ -19,14 +19,18 @@ from feeddrive.diagnosis.calibration.stated import is_within_tolerance, said_by_
 from feeddrive.diagnosis.calibration.together import cost, fitted_together, stepped_together
 from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes, with_slopes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
+from feeddrive.diagnosis.likelihood.coordinates import absent_coordinates, read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between
 from feeddrive.diagnosis.motion.row_steps import in_told_steps
-from feeddrive.effects.base import Effect, number
+from feeddrive.effects.base import Effect, FrictionEffect, number
 from feeddrive.effects.chain.stiffness_deviation import WHOLE, StiffnessDeviation
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
+
+HALVINGS = 8
+"""Of the size of friction that pushes, at most: of a two-hundredth nothing is told."""
 
 
 def refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
@@ -95,12 +99,22 @@ def where_friction_brakes(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     """A set beside values with which friction takes power; begun as declared where it would push the axis.
 
     A drag that stood in for what a name now takes leaves nothing to take it from, and steps stay where friction takes
-    power only from where it does.
+    power only from where it does: so friction begins as small as that asks for. A law that is other than ours may push
+    at a speed that nothing recorded has met, and is told by as much of it as does not.
     """
     if problem.calibration is None or of_hours(problem) or problem.possible(found.effects):
         return problem, found
-    there, effects = fitted_together(at_declared(problem), found.effects)
-    return there, fit(there, effects)
+    there, effects = at_declared(problem), list(found.effects)
+    absent, _ = absent_coordinates(effects, problem.plant)
+    rubs = np.array([isinstance(e, FrictionEffect) for e in effects for _ in read_coordinates([e], problem.plant)])
+    sized = rubs & ~np.isnan(absent)
+    for _ in range(HALVINGS):
+        if there.possible(effects):
+            break
+        now = read_coordinates(effects, problem.plant)
+        effects = write_coordinates(effects, problem.plant, np.where(sized, 0.5 * (now + absent), now))
+    there, fitted = fitted_together(there, effects)
+    return there, fit(there, fitted)
 
 
 def begun_as_declared(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:
