@@ -17,7 +17,7 @@ pytestmark = pytest.mark.slow
 @pytest.mark.parametrize(
     ("seed", "name"),
     [
-        # a drag that goes with the 0.7th power of the speed: a step with a curve leaves as little, and needs more of one
+        # a drag that goes with the 0.7th power of the speed: a step with a curve leaves as little, by more of a curve
         (701_405, "viscous_asymmetry"),
         # the same: straight, it would push the axis at its greatest speed, which nothing recorded has met
         (701_411, "viscous_asymmetry"),
