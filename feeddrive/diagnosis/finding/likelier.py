@@ -14,14 +14,14 @@ from feeddrive.diagnosis.finding.attempt import (
     refuse_of_no_hours,
     started,
 )
-from feeddrive.diagnosis.finding.open_map import log_odds_of_curves, with_curves_of
+from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_curves, with_curves_of
 from feeddrive.diagnosis.finding.round import Round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
 from feeddrive.diagnosis.finding.spring_law import LAWS, play_from_declared, with_likelier_law
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, error_of, fit
-from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
+from feeddrive.diagnosis.likelihood.problem import LEVEL, UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between, regained, same_samples
 from feeddrive.effects.base import Effect
 from feeddrive.effects.transmission.backlash import Backlash
@@ -84,7 +84,8 @@ def likelier(problem: Problem, found: Fit, now: Round, denied: Container[str]) -
             tried += [
                 _fitted(at_hand, one, [attempt], now.count, denied) for one in away[:1] if one.gain > 0 and one.added
             ]
-    best = _best((one for one in tried if one is not None and one.odds > 0), now.count)
+    likelier = [one for one in tried if one is not None and one.odds > 0]
+    best = _of_nearest_form(_best(likelier, now.count), likelier, now.count)
     beside = [one for one in sets if not one.dropped and len(one.added) == 1 and one.speaks > 0]
     odds = [min(one.gain, given.get(one.added, one.gain)) for one in beside]
     return best, tuple(Near(here[x.added[0]].name, gain, x.speaks) for x, gain in zip(beside, odds, strict=True))
@@ -157,6 +158,32 @@ def _best(likelier: Iterable[Taken], count: int) -> Taken | None:
         if best is None or (odds_between(best, one, count) if _as_curved(best, one) else one.odds - best.odds) > 0:
             best = one
     return best
+
+
+def _of_nearest_form(best: Taken | None, others: Sequence[Taken], count: int) -> Taken | None:
+    """The likeliest set, or one with another law in its place that needs less of a curve to leave noise alone.
+
+    A law of another form leaves much, and a law of another cause may by chance leave less than its own: a drop at low
+    speed in place of a drag with the 1.5th power of it. So where much is left both are asked beside their curves.
+    """
+    if best is None or best.problem.plain_error(best.fit.effects) < UNEXPLAINED:
+        return best
+    size = len(best.fit.effects)
+    rivals = [
+        one
+        for one in others
+        if len(one.fit.effects) == size and _as_curved(best, one) and same_samples(best.problem, one.problem)
+    ]
+    if len(rivals) < 2:
+        return best
+    able = []
+    for one in rivals:
+        curve, opened = likeliest_curve(one.problem, one.fit, count)
+        if curve.odds > 0:
+            there = fit(opened, one.fit.effects, iterations=JOINT_ITERATIONS)
+            if opened.plain_error(there.effects) * LEVEL**2 < 1:
+                able.append((curve, one))
+    return min(able, key=lambda pair: pair[0].left)[1] if able else best
 
 
 def _as_curved(one: Standing, other: Standing) -> bool:
