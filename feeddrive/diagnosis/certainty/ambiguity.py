@@ -14,6 +14,7 @@ from math import log
 
 import numpy as np
 
+from feeddrive.diagnosis.calibration.declared import as_effect, says_other
 from feeddrive.diagnosis.calibration.stated import given_back, said_by_effects
 from feeddrive.diagnosis.calibration.together import fitted_together
 from feeddrive.diagnosis.certainty.certainty_result import Ambiguity
@@ -116,7 +117,8 @@ def rivals_of(found: Search, judged: Sequence[Judged]) -> list[list[Rival]]:
         like = [
             other for other in imitations_of(found.fit.effects[place], found.problem.plant) if _is_free(found, other)
         ]
-        tried = [_in_place(found, judged, place, rival, mine) for rival in (*near, *like)]
+        values = _other_values(found, place)
+        tried = [_in_place(found, judged, place, rival, mine) for rival in (*near, *like, *values)]
         good = [rival for rival in tried if rival is not None and rival.as_good and not at_its_limit(rival.effect)]
         taken = found.fit.effects[place].name
         good = [r for r in good if (r.effect.name, taken) not in WITHIN or r.distance > SURE]
@@ -197,6 +199,19 @@ def _near(found: Search, place: int) -> list[Attempt]:
         free = [a for a in near if a.name not in present or a.fit.effects[-1].repeatable]
         return sorted(free, key=lambda a: -a.comparison.gain)[:MOST_RIVALS]
     return []
+
+
+def _other_values(found: Search, place: int) -> list[Effect]:
+    """Effects that say another declared value to be other, from none on, where the effect at a place says so of one.
+
+    They are no candidates of a round, as every set has them fitted within their tolerances.
+    """
+    known, named = found.problem.calibration, found.fit.effects[place]
+    if known is None or not says_other(named):
+        return []
+    others = [value for value in known.values if value.name not in ("", named.name)]
+    stated = {(value.name, value.place): as_effect(found.problem.plant, value, 0.0) for value in others}
+    return [*stated.values()]
 
 
 def _is_free(found: Search, effect: Effect) -> bool:
