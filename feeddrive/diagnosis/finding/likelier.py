@@ -120,12 +120,29 @@ def _fitted(
         taken = Taken(own, result, name, _odds(at_hand, Standing(own, result), count))
         if not one.added or one.dropped or compared(own, name, result, found.effects).pays:
             return taken
+        if taken.odds > 0 and (rested := _at_its_weights(taken, found, len(kept))) is not None:
+            return replace(rested, odds=_odds(at_hand, rested, count))
         anew = of_likelier_law(taken, count, denied)
         if anew is None or anew is taken or not gain_between(at_hand, anew).pays:
             return None
         return replace(anew, odds=odds_between(at_hand, anew, count))
     except InputError:
         return None
+
+
+def _at_its_weights(taken: Taken, found: Fit, kept: int) -> Taken | None:
+    """A likelier set fitted to its end, each channel weighed by what itself leaves, where it then pays; else None.
+
+    Beside a set that lacks an effect the channel that shows it weighs little: its fit comes to rest where declared
+    values say most of it, and no block left out tells of one that is still on its way.
+    """
+    own = taken.problem.balanced(taken.fit.effects)
+    result = fit(own, taken.fit.effects)
+    refuse_at_an_end(own, result.effects[kept:])
+    if not compared(own, taken.name, result, found.effects).pays:
+        return None
+    there = fit(taken.problem, result.effects, iterations=JOINT_ITERATIONS)
+    return replace(taken, fit=there)
 
 
 def _restarted(problem: Problem, kept: Sequence[Effect], first: Attempt, second: Attempt) -> list[Effect]:

@@ -44,8 +44,8 @@ from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
-from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.set_evidence import LEVEL_KNOWN, Standing, gain_between, odds_between
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
 from feeddrive.effects.source.constant_force import ConstantForce
@@ -278,12 +278,12 @@ def _ended(problem: Problem, found: Fit) -> tuple[tuple[Problem, Fit] | None, Pr
 
 
 def _is_seen(without: Standing, found: Standing) -> bool:
-    """Whether what is left of a channel is lower with a set than without some of it, by more than levels are known."""
+    """Whether the square left of a channel is lower with a set than without some of it, by more than it is known to."""
     pairs = zip(
         without.problem.by_channel(without.fit.residual), found.problem.by_channel(found.fit.residual), strict=True
     )
     return any(
-        float(np.mean(rows**2)) < LEVEL**2 * float(np.mean(before[name] ** 2))
+        float(np.mean(rows**2)) < (1 - LEVEL_KNOWN) * float(np.mean(before[name] ** 2))
         for before, after in pairs
         for name, rows in after.items()
     )
