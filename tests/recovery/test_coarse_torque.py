@@ -40,10 +40,17 @@ def test_what_coarse_steps_make_is_what_is_left_of_a_right_prediction() -> None:
     assert float(torque @ left) > 0.7 * float(np.linalg.norm(torque) * np.linalg.norm(left))
 
 
-def test_steps_finer_than_the_noise_make_nothing() -> None:
+def test_steps_that_the_noise_breaks_up_make_nothing() -> None:
+    """Noise of 0.038 N m is more than steps of 0.002, and of 0.1 leaves exp(-2 pi² 0.38²) of rounding, 6 %."""
     problem = bench_in_steps(0.002)
     assert coarse_step(problem.evidence[0]) == 0.0  # type: ignore[arg-type]
     assert steps_of_torque(problem, ()) is None
+    problem = bench_in_steps(0.1)
+    assert coarse_step(problem.evidence[0]) == pytest.approx(0.1)  # type: ignore[arg-type]
+    made = steps_of_torque(problem, ())
+    assert made is not None
+    left = problem.residual(())
+    assert float(made @ made) < 0.2**2 * float(left @ left)
 
 
 @pytest.mark.slow

@@ -84,8 +84,8 @@ def likelier(problem: Problem, found: Fit, now: Round, denied: Container[str]) -
             tried += [
                 _fitted(at_hand, one, [attempt], now.count, denied) for one in away[:1] if one.gain > 0 and one.added
             ]
-    likelier = [one for one in tried if one is not None and one.odds > 0]
-    best = _of_nearest_form(_best(likelier, now.count), likelier, now.count)
+    ahead = [one for one in tried if one is not None and one.odds > 0]
+    best = _of_nearest_form(_best(ahead, now.count), ahead, now.count)
     beside = [one for one in sets if not one.dropped and len(one.added) == 1 and one.speaks > 0]
     odds = [min(one.gain, given.get(one.added, one.gain)) for one in beside]
     return best, tuple(Near(here[x.added[0]].name, gain, x.speaks) for x, gain in zip(beside, odds, strict=True))
@@ -97,7 +97,7 @@ def _fitted(
     """A set fitted; None where it cannot be simulated, or what it adds does not pay on blocks left out.
 
     A law of the nut's spring that does not pay is asked once more from the declared values on: those fitted without it
-    stand in for it.
+    stand in for it. So is every other likelier set, at the weights that it gives the channels itself.
     """
     problem, found = at_hand.problem, at_hand.fit
     kept = [effect for place, effect in enumerate(found.effects) if place not in one.dropped]

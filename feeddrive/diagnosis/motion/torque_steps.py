@@ -1,17 +1,21 @@
 """What the steps of a recorded torque make of it: the same at every passage of the same motion, as no noise is.
 
-    e = Q(f) - f
+    e = k (Q(f) - f),    k = (Q(f) - f)'r / |Q(f) - f|²,    0 <= k <= 1
 
 | symbol | meaning | unit |
 |---|---|---|
 | f | torque that is predicted | N m |
 | Q | rounds to the steps of the recording | |
 | e | what the steps alone leave of a right prediction, in the band | N m |
+| r | residual, in the band | N m |
+| k | share of the rounding that comes again | 1 |
 
-Where the noise below the steps is smaller than they are, a torque that comes again is rounded alike each time: at a
+Where the noise below the steps is less than half of one, a torque that comes again is rounded alike each time: at a
 steady speed e stays, and looks like a friction that is other than declared. The spectrum of a residual knows how much
 that scatters, not that it holds along the answer of one value. So e is a part of the variance along any direction.
-Noise as large as a step leaves exp(-2 pi²) of e: Widrow and Kollár, Quantization Noise (2008), chapter 4.
+Noise of s leaves k = exp(-2 pi² s² / step²), of half a step 0.7 %: Widrow and Kollár, Quantization Noise (2008),
+chapter 4. The noise below steps cannot be read, as rows that toggle between two of them differ by as much as noise of a
+step does; the residual tells k.
 """
 
 from __future__ import annotations
@@ -34,7 +38,7 @@ _known: WeakKeyDictionary[Recording, float] = WeakKeyDictionary()
 
 
 def coarse_step(evidence: AxisEvidence) -> float:
-    """Step of a recorded torque [N m], where the noise of its rows is smaller; else 0."""
+    """Step of a recorded torque [N m], where less than one is read as the noise of its rows; else 0."""
     if TORQUE not in evidence.channels or TORQUE not in evidence.recording.channels:
         return 0.0
     recording = evidence.recording
@@ -61,4 +65,8 @@ def steps_of_torque(problem: Problem, effects: Sequence[Effect]) -> FloatArray |
             if np.all(np.isfinite(predicted)):
                 series[TORQUE] = e.in_band(step * np.round(predicted / step) - predicted)
         parts.append(e.weighted(series, rows))
-    return np.concatenate([*parts, np.zeros(len(problem.numbers))])
+    rounding = np.concatenate([*parts, np.zeros(len(problem.numbers))])
+    square = float(rounding @ rounding)
+    share = float(rounding @ problem.unwhitened(effects)) / square if square > 0 else 0.0
+    scaled: FloatArray = min(max(share, 0.0), 1.0) * rounding
+    return scaled
