@@ -20,9 +20,12 @@ from feeddrive.diagnosis.finding.sets import Neighbour, _not_told, members_weigh
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
 from feeddrive.diagnosis.likelihood.set_evidence import (
+    DISCREPANCY,
+    LEVEL_KNOWN,
     Standing,
     declared_cost,
     declining,
+    discrepancy,
     gain_between,
     log_odds,
     log_prior_of_size,
@@ -64,7 +67,7 @@ def problem(columns: dict[str, FloatArray], measured: FloatArray) -> Any:
     predictor = SimpleNamespace(of_motion=True)
     return SimpleNamespace(
         evidence=(evidence,), plant=PLANT, residual=residual, numbers=MeasuredRows(), predictor=predictor,
-        by_channel=by_channel, whitener=None,
+        by_channel=by_channel, whitener=None, noise_square=float(ROWS),
     )  # fmt: skip
 
 
@@ -281,6 +284,7 @@ class Made:
     calibration: None = None
     whitener: None = None
     by_channel: Callable[[FloatArray], list[dict[str, FloatArray]]] = by_channel
+    noise_square: float = float(ROWS)
 
 
 def standing(fit: Fit, counted: Any, series: FloatArray) -> Standing:
@@ -290,6 +294,14 @@ def standing(fit: Fit, counted: Any, series: FloatArray) -> Standing:
 
 
 OWN: dict[str, FloatArray] = {}
+
+
+def test_a_law_of_another_form_is_granted_a_share_of_what_is_above_the_noise() -> None:
+    made = problem({}, np.zeros(ROWS))
+    # a tenth of the noise at least, as its level is known to that
+    for square in (0.5 * ROWS, 1.05 * ROWS):
+        assert discrepancy(made, square) == pytest.approx(DISCREPANCY * LEVEL_KNOWN * ROWS)
+    assert discrepancy(made, 8.0 * ROWS) == pytest.approx(DISCREPANCY * 7.0 * ROWS)
 
 
 @pytest.mark.parametrize(("elsewhere", "wins"), [(1.0, False), (30.0, True)])
