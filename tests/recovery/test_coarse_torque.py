@@ -33,11 +33,11 @@ def test_what_coarse_steps_make_is_what_is_left_of_a_right_prediction() -> None:
     assert coarse_step(evidence) == pytest.approx(0.5)  # type: ignore[arg-type]
     made = steps_of_torque(problem, ())
     assert made is not None
-    # the noise of 0.02 N m flips some roundings, and the other channel has none: of the torque they are most
+    # noise of 0.038 N m, and a torque beyond the band, flip some roundings; by chance they are alike to a fiftieth
     (torque,), (left,) = (
         [rows["motor_torque"] for rows in problem.by_channel(one)] for one in (made, problem.residual(()))
     )
-    assert float(torque @ left) > 0.7 * float(np.linalg.norm(torque) * np.linalg.norm(left))
+    assert float(torque @ left) > 0.5 * float(np.linalg.norm(torque) * np.linalg.norm(left))
 
 
 def test_steps_that_the_noise_breaks_up_make_nothing() -> None:
@@ -50,7 +50,8 @@ def test_steps_that_the_noise_breaks_up_make_nothing() -> None:
     made = steps_of_torque(problem, ())
     assert made is not None
     left = problem.residual(())
-    assert float(made @ made) < 0.2**2 * float(left @ left)
+    # three times the 6 % of a rounding whose square is what is left
+    assert float(made @ made) < 0.18**2 * float(left @ left)
 
 
 @pytest.mark.slow

@@ -77,7 +77,7 @@ def test_real_one_stays_and_one_that_is_not_there_goes(rigid: Plant) -> None:
 
 
 def test_a_search_that_goes_on_asks_what_the_recordings_could_not_show_but_nothing_denied(rigid: Plant) -> None:
-    """A declared value is none to be named beside others within its tolerance, and may be beside what is left."""
+    """What could not be shown beside one set may be beside another; what was met and denied is not asked again."""
     problem, _, _ = prepared(rigid, [rigid_run("a", Truth(ripple=0.01))], [rigid_run("b", Truth())], 0.75)
     begun = Search(problem, fit(problem, ()), (), (), {"torque_ripple": "not beside that"})
     assert [one.name for one in search(problem, start=begun).fit.effects] == ["torque_ripple"]

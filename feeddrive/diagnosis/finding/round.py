@@ -70,9 +70,7 @@ def _calibrated(problem: Problem, name: str) -> str:
     )
 
 
-def _promising_refined(
-    scene: Scene, found: Fit, attempts: list[Attempt], pool: ThreadPoolExecutor
-) -> list[Attempt]:  # fmt: skip
+def _promising_refined(scene: Scene, found: Fit, attempts: list[Attempt], pool: ThreadPoolExecutor) -> list[Attempt]:
     """The attempts, the best first, those fitted that promise a fair part of the best."""
     waiting = sorted(attempts, key=lambda attempt: -_promise(scene, found, attempt))
     done: list[Attempt] = []

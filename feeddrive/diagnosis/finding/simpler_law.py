@@ -13,7 +13,8 @@ from feeddrive.diagnosis.calibration.stated import said_by_effects
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.refitting import refitted
 from feeddrive.diagnosis.finding.scene import scene_of
-from feeddrive.diagnosis.finding.spring_law import BEYOND, TOLD
+from feeddrive.diagnosis.finding.spring_law import TOLD
+from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, variance_along
@@ -73,19 +74,19 @@ def as_force(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
 def level_everywhere(problem: Problem, found: Fit) -> list[Effect]:
     """Stribeck frictions of a set whose fall no recorded speed tells: each is another level of friction.
 
-    The fall is not told where one far beyond every speed leaves as much as the fitted one does.
+    The fall is not told where one beyond the speed of any table leaves as much as the fitted one does.
     """
     result: list[Effect] = []
     for place, effect in enumerate(found.effects):
         if not isinstance(effect, Stribeck):
             continue
         fastest = max(float(np.max(np.abs(run.table_velocity))) for run in scene_of(problem, found.effects).runs)
-        velocity = effect.parameter("velocity")
-        if number(effect.values["velocity"]) < min(fastest, velocity.maximum):
+        if number(effect.values["velocity"]) < fastest:
             continue
-        beyond = effect.with_values(velocity=min(BEYOND * fastest, velocity.maximum))
+        beyond = effect.with_values(velocity=effect.parameter("velocity").maximum)
         rest = (*found.effects[:place], beyond, *found.effects[place + 1 :])
-        flat = fit(problem, rest, iterations=JOINT_ITERATIONS)
+        held = len(read_coordinates(found.effects[: place + 1], problem.plant)) - 1  # its velocity, after its force
+        flat = fit(problem, rest, iterations=JOINT_ITERATIONS, still=[held])
         left = min(flat, found, key=lambda one: one.squared_error)
         if flat.squared_error - found.squared_error < 2 * TOLD * variance_along(problem, left, found, flat):
             result.append(effect)

@@ -6,15 +6,15 @@ Where the motor is given, the table lags by the stretch of the spring. What a so
     -x_left = a / (1 - a) F (x - x_l) / (x_h - x_l) / k    stiffness falling along the stroke
 
 follows the transmitted force F; the first by least squares for a few F1, the second beside a softer spring everywhere.
-Declared values within their tolerances have taken what they can of it, so that both are asked beside their slopes: what
-is left of a table that lags by 0.1 µm at every stop is 30 times less. Where the lag does not follow, no
-simulation is spent on it.
+Declared values within their tolerances have taken what they can of it, so that both are asked beside their slopes.
+Where the lag does not follow, no simulation is spent on it.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from feeddrive.diagnosis.calibration.calibration import Whitener, whitener
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.likelihood.coordinates import LEAST
@@ -48,12 +48,12 @@ def preload_loss(scene: Scene) -> list[list[Effect]]:
     stiffness = nut_stiffness(scene.plant)
     if lag is None:
         return [[PreloadLoss.of(ratio=0.3, force=float(share * np.std(force))) for share in (0.3, 1.0)]]
-    beside = _BesideValues(scene)
-    lag = beside.left(lag)
+    beside = _beside_values(scene)
+    lag = beside.applied(lag)
     limits = np.abs(force).max() * np.geomspace(LEAST_FORCE, 1.0, FORCES)
     slopes, shares = np.zeros(FORCES), np.zeros(FORCES)
     for i, limit in enumerate(limits):  # one after the other: all at once are four times the recording
-        stretch = beside.left(_in_band(scene, np.clip(force, -limit, limit) / stiffness))
+        stretch = beside.applied(_in_band(scene, np.clip(force, -limit, limit) / stiffness))
         energy = float(stretch @ stretch)
         if energy <= NOTHING * len(stretch) * (limit / stiffness) ** 2:
             continue  # the force never comes below the limit: in one direction the lag stays as it is
@@ -82,9 +82,11 @@ def stiffness_vs_position(scene: Scene) -> list[list[Effect]]:
         return [[StiffnessVsPosition.of(share_over_stroke=0.0, low=low, high=high)]]
     stretch = force / nut_stiffness(scene.plant)
     along = (scene.runs[scene.longest].table_position - low) / (high - low)
-    beside = _BesideValues(scene)
-    lag = beside.left(lag)
-    everywhere, growing = beside.left(_in_band(scene, np.column_stack([stretch, stretch * along]))).T
+    beside = _beside_values(scene)
+    lag = beside.applied(lag)
+    everywhere, growing = (
+        beside.applied(one) for one in _in_band(scene, np.column_stack([stretch, stretch * along])).T
+    )
     least = NOTHING * len(stretch) * float(np.max(stretch**2))
     if not float(everywhere @ everywhere) > least:
         return []  # a force that stays
@@ -97,26 +99,15 @@ def stiffness_vs_position(scene: Scene) -> list[list[Effect]]:
     return [[StiffnessVsPosition.of(share_over_stroke=0.0, low=low, high=high)]]
 
 
-class _BesideValues:
-    """What the declared values leave of a series of the table position that they may stand for within tolerances."""
-
-    def __init__(self, scene: Scene) -> None:
-        evidence, known = scene.problem.evidence[scene.longest], scene.problem.calibration
-        rows = evidence.fit_rows
-        columns = np.zeros((int(rows.sum()), 0))
-        if known is not None and known.values:
-            columns = known.slopes[evidence.recording]["table_position"][rows]
-        columns = columns - columns.mean(axis=0)
-        # in units of the noise, and of all samples, of which fits take a few
-        variance = 1.0 if known is None else known.variance
-        tolerance = evidence.unit("table_position") * np.sqrt(variance * evidence.thinning)
-        basis, _ = np.linalg.qr(np.vstack([columns, tolerance * np.eye(columns.shape[1])]))
-        self.basis = basis[: len(columns)]
-
-    def left(self, series: FloatArray) -> FloatArray:
-        """Series, or columns, of the fitted samples, without what the values take of them."""
-        rest: FloatArray = series - self.basis @ (self.basis.T @ series)
-        return rest
+def _beside_values(scene: Scene) -> Whitener:
+    """What takes out of a series of the fitted table position what declared values within tolerances may stand for."""
+    evidence, known = scene.problem.evidence[scene.longest], scene.problem.calibration
+    if known is None or not known.values:
+        return whitener(np.zeros((int(evidence.fit_rows.sum()), 0)), np.zeros(0), 1.0)
+    columns = known.slopes[evidence.recording]["table_position"][evidence.fit_rows]
+    columns = (columns - columns.mean(axis=0)) / evidence.unit("table_position")
+    # of all samples, of which fits take a few
+    return whitener(columns, known.coordinates, known.variance * evidence.thinning)
 
 
 def _lag(scene: Scene) -> FloatArray | None:
