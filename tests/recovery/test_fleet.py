@@ -12,20 +12,23 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 
 from feeddrive.plant.file.plant_file import read_plant
 from tests.generator.constants import declared_constants
 from tests.generator.drawn_effects import MAKERS, OFF_GROUPS, TOLERANCES, Drawn
 from tests.generator.effects import ChannelDelay, Payload, Presliding
 from tests.generator.machines import drawn_machine
-from tests.generator.runs import changes, impedance, run, steps_of
+from tests.generator.runs import Array, changes, impedance, run, steps_of
 from tests.generator.telling import (
+    FARTHEST,
     beyond,
     calibration,
     changes_left,
     distance,
     from_declared,
     missed,
+    nearest,
     simulated_calibration,
     visible,
 )
@@ -142,7 +145,7 @@ def test_planted_effects_are_told_from_declared_values(pair: Case) -> None:
     floor = missed(pair.runs[0], pair.seed)
     for one in pair.planted:
         assert from_declared(pair.runs[0], one.effect.name, floor) >= 0.7 * LEAST_TOLD  # another draw of the sensors
-    columns = calibration(pair.runs[0], floor)
+    columns = simulated_calibration(pair.runs[0], floor)
     assert distance(0.5 * columns[:, 0], columns, free=0) <= 0.5
     assert distance(np.ones(len(columns)), columns, free=0) > 0.5 * math.sqrt(len(columns))
 
@@ -159,6 +162,31 @@ def test_a_value_is_told_by_what_is_beyond_its_tolerance(pair: Case) -> None:
         loaded = dataclasses.replace(bare, effects=(payload,), constants=payload.planted(bare.constants))
         told[share] = from_declared(loaded, "payload", floor)
     assert told[0.04] < 0 < told[0.2]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_values_are_as_near_as_bounded_least_squares_find_them(seed: int) -> None:
+    """Four values of a resonance, each within three deviations of 5 %, against another payload: SciPy's own search."""
+    random = np.random.default_rng([seed, 61])
+    hertz = np.linspace(0.2, 2.0, 400)
+
+    def response(sizes: Array) -> Array:
+        gain, stiffness, mass, damping = np.exp(0.05 * sizes)
+        return np.asarray(gain * hertz**2 / np.hypot(stiffness - mass * hertz**2, 0.1 * damping * hertz))
+
+    off = random.uniform(-2.0, 2.0, 4)
+    wanted = 30.0 * (response(off) + 0.02 * random.standard_normal() * hertz**2)
+
+    def left(sizes: Array) -> Array:
+        return np.asarray(wanted - 30.0 * response(sizes))
+
+    best = min(
+        least_squares(lambda x: np.concatenate([left(x), x]), begun, bounds=(-FARTHEST, FARTHEST)).cost
+        for begun in (np.zeros(4), *random.uniform(-2.0, 2.0, (5, 4)))
+    )
+    columns = np.column_stack([(left(off) - left(off + 1e-3 * one)) / 1e-3 for one in np.eye(4)])
+    # the last step and the last slopes gain less than a fiftieth each
+    assert (1 - 1e-6) * math.sqrt(2 * best) <= nearest(left, columns) <= 1.04 * math.sqrt(2 * best)
 
 
 def test_nothing_is_left_of_values_that_are_off_as_far_as_their_sizes_say(pair: Case) -> None:
@@ -199,7 +227,7 @@ def test_simulated_slopes_are_the_quasi_static_ones_below_the_resonance(pair: Ca
     """Up to 5 Hz, for the masses, the frictions and the springs; what a spring's damper does there is nothing."""
     one = pair.runs[0]
     floor = missed(one, pair.seed)
-    simulated = simulated_calibration(one, floor, ())[:, 2:]
+    simulated = simulated_calibration(one, floor)[:, 2:]
     quasi_static = calibration(one, floor)[:, :-2]
     slow = np.tile(floor.hertz[floor.inside] <= 5.0, 2 * len(floor.densities))
     for place, (names, _) in enumerate(OFF_GROUPS):

@@ -20,7 +20,7 @@ from tests.generator.drawn_effects import MAKERS, drawn_effect, is_possible
 from tests.generator.effects import Effect
 from tests.generator.machines import Machine
 from tests.generator.runs import Run, changes
-from tests.generator.telling import calibration, distance, missed, whitened
+from tests.generator.telling import distance, missed, simulated_calibration, whitened
 from tests.recovery.fleet.case import Case, case
 
 BY_ORDER = ("torque_ripple", "ball_pass_ripple", "lead_error_periodic")
@@ -49,7 +49,7 @@ def told_apart(drawn: Case) -> list[Told]:
     run, machine = drawn.runs[0], drawn.true
     effects = run.effects
     floor = missed(run, drawn.seed)
-    base = calibration(run, floor)
+    base = simulated_calibration(run, floor)
     found = []
     for one in drawn.planted:
         without = tuple(other for other in effects if other.name != one.effect.name)
