@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
+from feeddrive.diagnosis.likelihood import fit as fitting
 from feeddrive.diagnosis.likelihood.coordinates import (
     absent_coordinates,
     coordinate_ends,
@@ -13,11 +17,12 @@ from feeddrive.diagnosis.likelihood.coordinates import (
     read_coordinates,
     write_coordinates,
 )
-from feeddrive.diagnosis.likelihood.fit import inside_step, linear_step
+from feeddrive.diagnosis.likelihood.fit import fit, inside_step, linear_step
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation
 from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.plant_file import read_plant
@@ -111,3 +116,35 @@ def test_spring_far_from_its_zero_is_fitted_by_its_force() -> None:
     softer, nearer = (write_coordinates([spring], BENCH, at * factor)[0].values for factor in ([0.5, 1.0], [1.0, 0.5]))
     assert softer == pytest.approx({"stiffness": 14.5, "zero": BENCH.middle - 38.0})
     assert nearer == pytest.approx({"stiffness": 29.0, "zero": BENCH.middle - 9.5})
+
+
+@pytest.mark.parametrize("told", [0.5, 0.2, 0.1])
+def test_a_step_that_leads_eighty_times_too_far_is_shortened_until_it_comes_nearer(
+    told: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a law whose first slope is of its size as a whole, while a small one of it is what the data hold."""
+    column = np.random.default_rng(4).standard_normal(200)
+    column /= np.linalg.norm(column)
+    size = ConstantForce.parameter("force").size
+
+    def made(force: float) -> np.ndarray:
+        return np.asarray(column * (force + 100.0 * np.tanh(force / told) * abs(force)))
+
+    def force_of(effects: Sequence[Effect]) -> float:
+        return float(effects[0].values["force"])  # type: ignore[arg-type]
+
+    problem = SimpleNamespace(
+        plant=BENCH,
+        measured=made(told),
+        predicted=lambda effects: made(force_of(effects)),
+        possible=lambda effects: True,
+        budget=SimpleNamespace(is_spent=False),
+    )
+
+    def jacobian(_: object, effects: Sequence[Effect], *__: object) -> np.ndarray:
+        force = force_of(effects)
+        return size * ((made(force + 1e-6) - made(force - 1e-6)) / 2e-6)[:, None]
+
+    monkeypatch.setattr(fitting, "jacobian_of", jacobian)
+    found = fit(problem, [ConstantForce.of(force=0.0)])  # type: ignore[arg-type]
+    assert force_of(found.effects) == pytest.approx(told, rel=0.02)  # ENOUGH: a hundredth of the first error

@@ -51,7 +51,7 @@ def is_material(effect: Effect, plant: Plant) -> bool:
     if effect.name == "friction_deviation":
         return any(abs(values[key] - 1) >= LEAST_FACTOR for key in ("coulomb_factor", "viscous_factor"))
     if effect.name == "stiffness_vs_position":
-        return abs(values["share_over_stroke"]) >= LEAST_SHARE
+        return max(abs(values["share_over_stroke"]), abs(values["middle_compliance"])) >= LEAST_SHARE
     if effect.name == "preload_loss" and values["ratio"] > 1 - LEAST_SOFTENING:
         return False
     if effect.name in ("structural_mode", "payload"):

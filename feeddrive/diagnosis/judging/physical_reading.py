@@ -176,11 +176,13 @@ _SOFT_PARTS = {
 
 def _stiffness_vs_position(v: Mapping[str, Value]) -> str:
     share = _one(v["share_over_stroke"])
-    where = "falls" if share > 0 else "rises"
+    middle = _one(v["middle_compliance"])
+    where, side = "falls" if share > 0 else "rises", "above" if middle > 0 else "below"
     return (
         f"The axial stiffness {where} by {percent(abs(share))} from {1e3 * _one(v['low']):.0f} mm to "
-        f"{1e3 * _one(v['high']):.0f} mm: the free length of a screw held at one end, or a bearing that is not the one "
-        "declared."
+        f"{1e3 * _one(v['high']):.0f} mm, and halfway the drive gives way by {percent(abs(middle))} {side} the "
+        "straight line: the free length of a screw, straight where it is held at one end and a parabola where both are;"
+        " or a bearing that is not the one declared."
     )
 
 

@@ -58,7 +58,6 @@ TWO_HEATS = {
 
 FIXED = {
     ("friction_vs_position", "position"),
-    ("stiffness_vs_position", "middle_compliance"),
     ("stiffness_vs_position", "low"),
     ("stiffness_vs_position", "high"),
     ("ambient_drift", "time"),

@@ -3,7 +3,7 @@
 Where the motor is given, the table lags by the stretch of the spring. What a softer spring adds to it, in the band,
 
     -x_left = b sat(F, F1) / k                 preload lost around zero force, b = 1 / ratio - 1
-    -x_left = a / (1 - a) F (x - x_l) / (x_h - x_l) / k    stiffness falling along the stroke
+    -x_left = (b u + 4 m u (1 - u)) F / k,    u = (x - x_l) / (x_h - x_l)    stiffness falling along the stroke
 
 follows the transmitted force F; the first by least squares for a few F1, the second beside a softer spring everywhere.
 Declared values within their tolerances have taken what they can of it, so that both are asked beside their slopes.
@@ -18,6 +18,7 @@ from feeddrive.diagnosis.calibration.calibration import Whitener, whitener
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.likelihood.coordinates import LEAST
+from feeddrive.diagnosis.likelihood.fit import unit_columns
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation, parts_of
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
@@ -26,8 +27,9 @@ from feeddrive.plant.analysis.stiffness_budget import nut_stiffness
 from feeddrive.typing import FloatArray
 
 LEAST_LAG = 0.004
-"""Share of the square of what is left of the position that must follow the force: less than what an effect must take
-away of all channels together, and twice what the best of the forces tried takes from noise in some seconds."""
+"""Share of the square of what is left of the position that must follow the force, for each form that it is asked of:
+less than what an effect must take away of all channels together, and twice what the best of the forces tried takes from
+noise in some seconds."""
 
 FORCES = 24
 """Forces F1 that are tried, up to the greatest transmitted one."""
@@ -75,7 +77,10 @@ def stiffness(scene: Scene) -> list[list[Effect]]:
 
 
 def stiffness_vs_position(scene: Scene) -> list[list[Effect]]:
-    """The slope over the stroke: the declared one, or where none is declared that of the recordings."""
+    """None over the stroke, if the lag follows force times place, or its square, beside the stiffness everywhere.
+
+    The stroke is the declared one, or where none is declared that of the recordings.
+    """
     low, high = scene.plant.stroke or _travelled(scene)
     lag, force = _lag(scene), _transmitted(scene)
     if lag is None:
@@ -84,17 +89,20 @@ def stiffness_vs_position(scene: Scene) -> list[list[Effect]]:
     along = (scene.runs[scene.longest].table_position - low) / (high - low)
     beside = _beside_values(scene)
     lag = beside.applied(lag)
-    everywhere, growing = (
-        beside.applied(one) for one in _in_band(scene, np.column_stack([stretch, stretch * along])).T
+    everywhere, *growing = (
+        beside.applied(one)
+        for one in _in_band(scene, np.column_stack([stretch, stretch * along, stretch * along * (1 - along)])).T
     )
     least = NOTHING * len(stretch) * float(np.max(stretch**2))
     if not float(everywhere @ everywhere) > least:
         return []  # a force that stays
-    growing = growing - everywhere * float(growing @ everywhere) / float(everywhere @ everywhere)
-    if not float(growing @ growing) > least:
+    growing = [one - everywhere * float(one @ everywhere) / float(everywhere @ everywhere) for one in growing]
+    growing = [one for one in growing if float(one @ one) > least]
+    if not growing:
         return []  # at a place that stays
-    slope = float(growing @ lag) / float(growing @ growing)
-    if slope**2 * float(growing @ growing) < LEAST_LAG * float(lag @ lag):
+    columns, _ = unit_columns(np.column_stack(growing))
+    taken = columns @ np.linalg.lstsq(columns, lag, rcond=1e-10)[0]
+    if float(taken @ taken) < LEAST_LAG * len(growing) * float(lag @ lag):
         return []
     return [[StiffnessVsPosition.of(share_over_stroke=0.0, low=low, high=high)]]
 
