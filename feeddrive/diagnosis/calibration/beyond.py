@@ -27,6 +27,7 @@ from feeddrive.diagnosis.calibration.together import cost, fitted_together
 from feeddrive.diagnosis.calibration.value_slopes import ENOUGH, with_new_slopes, with_slopes
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND, SURE
 from feeddrive.diagnosis.motion.preparing import weighed_by
 from feeddrive.effects.base import Effect
@@ -114,7 +115,9 @@ def is_beyond(problem: Problem, rest: Sequence[Effect], effect: Effect) -> bool:
         effect: which says that they are other.
     """
     back = given_back(problem, effect)
-    assert back.calibration is not None
+    if back.calibration is None:  # declared as exact: every other value is beyond
+        without, other = (Standing(problem, fit(problem, some)) for some in (rest, (*rest, effect)))
+        return odds_between(without, other, len(problem.predictor.candidates)) > 0
     values = back.calibration.values
     places = tuple(i for i, value in enumerate(values) if value.name and is_said_by(value, effect))
     coordinates = back.calibration.coordinates.copy()

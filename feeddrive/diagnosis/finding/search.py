@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Container
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,6 +41,7 @@ from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.simpler_law import as_force, as_payload, level_everywhere
 from feeddrive.diagnosis.finding.spring_law import soft_everywhere
+from feeddrive.diagnosis.finding.two_at_once import two_at_once
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
@@ -207,7 +209,12 @@ def search(
             problem, found, by = beyond
             trials.append(Trial(number, found.effects[-1].name, by.gain, by.standard_error, True))
         elif not others:
-            break
+            two = two_at_once(problem, found, asked.now, partial(_asked_beside, {**impossible}, denied, number))
+            after = None if two is None else _refitted_with(asked._replace(taken=two), found, denied)
+            if after is None or members_of(after[1].effects) in met:
+                break
+            problem, found = in_steps_told(*after)
+            met.add(members_of(found.effects))
     opened, problem, found, small = _ended(problem, found)
     denied |= dict.fromkeys((one.name for one in small), SMALL)
     found = with_usual_sizes(problem, found)
@@ -223,6 +230,13 @@ def _asked(
     if taken is None and Backlash.name not in denied:
         taken = with_play(problem, found, now.count)
     return _Asked(now, of_likelier_law(taken, now.count, denied), near)
+
+
+def _asked_beside(
+    impossible: dict[str, str], denied: dict[str, str], number: int, problem: Problem, found: Fit
+) -> Taken | None:  # fmt: skip
+    """The likeliest set near another one, as `_asked`."""
+    return _asked(problem, found, impossible, denied, number).taken
 
 
 def _likelier_value(
