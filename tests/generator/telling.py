@@ -20,7 +20,7 @@ from scipy.optimize import lsq_linear
 from tests.generator.constants import declared_constants
 from tests.generator.drawn_effects import OFF_GROUPS, TOLERANCES, TOUCHED
 from tests.generator.driven import driven
-from tests.generator.effects import Effect
+from tests.generator.effects import ChannelDelay, Effect
 from tests.generator.machines import Machine
 from tests.generator.runs import Array, Run, at_rest, changes, longest_step
 
@@ -77,7 +77,7 @@ def from_declared(run: Run, name: str, floor: Missed) -> float:
     value is other, what has to be told is what of it is beyond the tolerance, and from all other values.
     """
     without: tuple[Effect, ...] = tuple(other for other in run.effects if other.name != name)
-    target = whitened(floor, *changes(run, without))
+    target = whitened(floor, *_changed(run, without))
     if name not in TOUCHED:
         return distance(target, simulated_calibration(run, floor), free=0)
     shares = beyond(next(one for one in run.effects if one.name == name), run.machine)
@@ -140,7 +140,7 @@ def changes_left(run: Run, effects: tuple[Effect, ...], without: tuple[str, ...]
         else:
             factors |= dict.fromkeys(names, factor)
     other = dataclasses.replace(run.machine, axis=run.machine.axis.off_by(factors))
-    torque, position = changes(run, effects, other)
+    torque, position = _changed(run, effects, other)
     rows = run.torque[run.rows]
     return rows - constant * (rows - torque), position
 
@@ -155,6 +155,19 @@ def beyond(effect: Effect, machine: Machine) -> dict[str, float]:
 
 SPEEDS = 2
 """Columns of the speeds at which friction changes its sign: the first ones; nothing is simulated for them."""
+
+
+def _changed(run: Run, effects: tuple[Effect, ...], machine: Machine | None = None) -> tuple[Array, Array]:
+    """Return `changes`, less those of the run's own plant where the other one has a late channel as well.
+
+    `changes` reads the other plant as one whose channels are in time.
+    """
+    torque, position = changes(run, effects, machine)
+    if not any(isinstance(one, ChannelDelay) for one in effects):
+        return torque, position
+    own = changes(run, run.effects)
+    return torque - own[0], position - own[1]
+
 
 PASSES, HALVINGS, REST = 8, 6, 0.02
 """Sets of slopes, and steps with each, at most; halvings of a step; and the share of the length that ends both.
@@ -181,7 +194,7 @@ def simulated_calibration(run: Run, floor: Missed, without: tuple[str, ...] = ()
         parts = step * run.torque[run.rows], none
         if kind != "torque_constant":
             other = run.machine.axis.off_by(dict.fromkeys(names, 1.0 + step))
-            torque, position = changes(run, run.effects, dataclasses.replace(run.machine, axis=other))
+            torque, position = _changed(run, run.effects, dataclasses.replace(run.machine, axis=other))
             parts = -torque, -position
         columns.append(whitened(floor, *parts)[:, None] / STEP)
     return np.hstack(columns)

@@ -221,6 +221,11 @@ def test_a_late_torque_shows_in_the_torque_alone(pair: Case) -> None:
     # of what changes it is told by the time that it lags
     rate = np.gradient(late.torque, cycle)[late.rows]
     assert abs(torque @ rate / (rate @ rate)) == pytest.approx(cycle / 3, rel=0.5)
+    # beside a plant that is late as well, declared values change what they change of one that is not
+    ready = run(one.machine, (), one.setpoint, np.zeros(len(one.setpoint)))
+    floor = missed(ready, NULL)
+    there, here = simulated_calibration(late, floor), simulated_calibration(ready, floor)
+    assert np.linalg.norm(there - here) < 0.2 * np.linalg.norm(here)
 
 
 def test_simulated_slopes_are_the_quasi_static_ones_below_the_resonance(pair: Case) -> None:

@@ -1,0 +1,43 @@
+"""Two effects that are as likely as nothing each alone, and what comes of a plant whose values are exact."""
+
+from __future__ import annotations
+
+import pytest
+
+from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.finding.refitting import with_softer_spring
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.effects.transmission.preload_loss import PreloadLoss
+from tests.generator import effects as planted
+from tests.recovery.planted import axis_plant
+from tests.recovery.test_spring_and_mode import problem_of, recordings
+
+
+@pytest.mark.parametrize("force", [-12.0, -9.0])
+def test_a_bristle_beside_friction_that_drops_with_speed(force: float) -> None:
+    """Alone either leaves the table 11 times its noise off, by jumps at reversals, which no block left out tells."""
+    fitted, judged = recordings(
+        "light",
+        planted.Presliding(stiffness=3.0e6, damping=4000.0, break_away=0.8),
+        planted.Stribeck(delta_force=force, velocity=0.006),
+        seeds=(31, 32),
+    )
+    found, _ = diagnose(axis_plant("light"), [fitted], [judged])
+    named = {one.name: one.parameters for one in found.effects}
+    assert set(named) == {"presliding", "stribeck"}
+    # intervals of 95 % are 1 to 4 % wide either way
+    assert named["stribeck"]["delta_force"].value == pytest.approx(force, rel=0.05)
+    assert named["presliding"]["stiffness"].value == pytest.approx(3.0e6, rel=0.05)
+
+
+@pytest.mark.parametrize(("factor", "named"), [(0.7, True), (1.0, False)])
+def test_a_softer_spring_is_asked_of_a_plant_whose_values_are_exact(factor: float, named: bool) -> None:
+    """Every other value is beyond what is declared; whether it is another the recordings tell."""
+    problem = problem_of("light", planted.StiffnessDeviation(factor=factor))
+    assert problem.calibration is None
+    soft = PreloadLoss.of(ratio=0.9, force=100.0)
+    found = fit(problem, (soft,), iterations=0)
+    there = with_softer_spring(problem, found, found.effects)
+    assert (there is not None) is named
+    if there is not None:
+        assert there[1].effects[-1].values["factor"] == pytest.approx(factor, rel=0.02)
