@@ -23,17 +23,18 @@ from feeddrive.errors import InputError
 def two_at_once(
     problem: Problem, found: Fit, now: Round, ask: Callable[[Problem, Fit], Taken | None]
 ) -> Taken | None:  # fmt: skip
-    """The likeliest set of two further effects that is likelier than a set with neither; None where there is none.
+    """The likeliest set of two effects or more that is likelier than none; None where there is none.
 
-    Asked where much is left, of the effects that take a fair part of it alone (`FAIR_PART`).
+    Asked where much is left beside no effect at all, of those that take a fair part of it alone (`FAIR_PART`). Beside
+    others each round costs as much as all before it, and what is left of a real axis is much at every end.
 
     Args:
         problem: recordings.
-        found: a set beside which no effect is likelier.
+        found: nothing but the declared machine, beside which no effect is likelier.
         now: what was tried beside it.
         ask: the likeliest set near another one, a round beside that; None where none is likelier.
     """
-    if problem.plain_error(found.effects) < UNEXPLAINED or problem.budget.skips("two effects at once"):
+    if found.effects or problem.plain_error(found.effects) < UNEXPLAINED or problem.budget.skips("two effects at once"):
         return None
     at_hand, ahead = Standing(problem, found), list[Taken]()
     able = [attempt for attempt in now.attempts if same_samples(attempt.problem, problem)]
