@@ -18,6 +18,7 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt
+from feeddrive.diagnosis.finding.bristle_form import of_likelier_bristle
 from feeddrive.diagnosis.finding.curve_in_place import curve_of_value, of_no_name, with_its_curves
 from feeddrive.diagnosis.finding.elsewhere import at_likelier_place
 from feeddrive.diagnosis.finding.likelier import Near, Taken, likelier, of_likelier_law, with_play
@@ -264,7 +265,7 @@ def _refitted_with(asked: _Asked, found: Fit, denied: Container[str]) -> tuple[P
     problem = without_effects(taken.problem, found.effects, taken.fit.effects)
     there = refitted(with_curves_of(problem, taken.fit.effects), taken.fit)
     there = as_force(*there, asked.now.count) if ConstantForce.name not in denied else there
-    return as_payload(*there, asked.now.count)
+    return of_likelier_bristle(*as_payload(*there, asked.now.count), asked.now.count)
 
 
 def _ended(problem: Problem, found: Fit) -> tuple[tuple[Problem, Fit] | None, Problem, Fit, list[Effect]]:

@@ -45,6 +45,9 @@ LEAST_CURVE = 0.01
 """Share of the residual force's square that must follow the position before a table is tried."""
 
 
+BREAK_AWAY = 0.7
+"""Share of the steady deflection that a bristle begins with that is elastic first; it is fitted from there."""
+
 SHARES_OF_DURATION = (0.15, 0.6)
 """Time constants that are tried first, over the duration; a longer one looks like a straight line."""
 
@@ -77,7 +80,8 @@ def presliding(scene: Scene) -> list[list[Effect]]:
     level = max(declared_level(scene.plant, Port.TABLE), 1.0)
     deflections = (1e-7, 3e-7, 1e-6, 3e-6, 1e-5, 3e-5, 1e-4)
     return [
-        [Presliding.of(stiffness=level / z, damping=0.0, break_away=share) for z in deflections] for share in (0.0, 0.7)
+        [Presliding.of(stiffness=level / z, damping=0.0, break_away=share) for z in deflections]
+        for share in (0.0, BREAK_AWAY)
     ]
 
 
