@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import pytest
 
+from feeddrive.diagnosis.finding.bristle_form import of_likelier_bristle
 from feeddrive.diagnosis.likelihood.coordinates import at_an_end, read_coordinates
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.prediction import AxisPredictor
 from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.effects.friction.presliding import Presliding
+from feeddrive.effects.friction.stribeck import Stribeck
 from tests.recovery.drawn import drawn
 from tests.recovery.planted import axis_plant, pair
 
@@ -37,3 +39,18 @@ def test_one_that_slips_from_the_start_has_no_share() -> None:
 @pytest.mark.parametrize("share", [1e-3, 0.98])
 def test_the_ends_of_the_share_are_laws(share: float) -> None:
     assert not at_an_end(Presliding.of(stiffness=1e7, damping=0.0, break_away=share), axis_plant("bench"))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.4, 0.8])
+def test_the_likelier_form_of_a_bristle_stands_beside_what_is_named_later(share: float) -> None:
+    """Begun as one that slips throughout; where it does, the other form has a value more and leaves as much."""
+    plant = axis_plant("bench")
+    evidence = prepare(pair("bench", "null")[0], plant, 1.0)
+    bristle = Presliding.of(stiffness=2e7, damping=200.0, break_away=share)
+    drop = Stribeck.of(delta_force=30.0, velocity=0.01)
+    problem = Problem(plant, (drawn(plant, evidence, [bristle, drop], seed=37),), AxisPredictor())
+    slipping = fit(problem, [bristle.with_values(break_away=0.0), drop])
+    _, there = of_likelier_bristle(problem, slipping, 50)
+    found, _ = there.effects
+    assert found.values["break_away"] == pytest.approx(share, abs=0.05)
+    assert (there is slipping) is (share == 0.0)
