@@ -4,7 +4,8 @@ No law is exactly ours. A drag that differs between the directions grows with a 
 with another tail, a machine warms up with two time constants. What is left beside the law is then its own, and no
 second effect. Two families hold such forms, with a deviation of one each: as large as what the law itself does.
 
-    s P_k(u)              law over a variable:      u from -1 to 1 over what is visited, k = 1 to 3, 0 too of a part
+    s P_k(u)              law over a variable:      u from -1 to 1 over what is visited, k = 1 to 3
+    s (1 - tanh(v / w))   part of a law that takes some speed:    w over the highest v = 1/81, 1/27, 1/9, 1/3
     s(3^m l) - s(l)       law of a scale l:         m = -2, -1, 1, 2
 
 | symbol | meaning | unit |
@@ -43,6 +44,9 @@ HALF_WAVES: tuple[int, ...] = (1, 2, 3)
 STEPS = (1 / 9, 1 / 3, 3.0, 9.0)
 """Scales of a mixture, over that of the law: beside exp(-x^2) they follow 1 / (1 + x) to 5 % and exp(-x) to 2 %."""
 
+SPEEDS = (1 / 81, 1 / 27, 1 / 9, 1 / 3)
+"""Speeds that a part of a law takes, over the highest: a step at any speed between is a mixture of two of them."""
+
 LEAST = 0.01
 """Speed or torque over the largest below which the logarithm goes no further: there friction turns."""
 
@@ -78,11 +82,13 @@ def law_curves(problem: Problem, effects: Sequence[Effect], place: int) -> dict[
             u = _visited({**problem.predictor.variables(plant, e), **with_law}.get(law.curve_over), law)
             if u is None:  # its variable is not predicted here
                 return {}
-            over, waves = own, HALF_WAVES
-            if law.curved is not law:  # a part of it may be another in the mean as well
+            over, factors = own, [np.polynomial.Legendre.basis(k)(u) for k in HALF_WAVES]
+            if law.curved is not law:
                 part = problem.predictor.predict(problem.machine([*others, law.curved]), e)
-                over, waves = {name: part[name] - bare[name] for name in e.channels}, (0, *HALF_WAVES)
-            parts = [{name: over[name] * np.polynomial.Legendre.basis(k)(u) for name in e.channels} for k in waves]
+                over = {name: part[name] - bare[name] for name in e.channels}
+                v = np.abs(problem.predictor.variables(plant, e)[law.curve_over])
+                factors = [1 - np.tanh(v / (share * np.max(v))) for share in SPEEDS]
+            parts = [{name: over[name] * factor for name in e.channels} for factor in factors]
         found[e] = [beside(part, own, e) for part in parts]
     return found
 

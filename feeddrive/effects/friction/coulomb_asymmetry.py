@@ -16,8 +16,23 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature, forward, number
-from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.typing import Expression
+
+
+class DirectionalFriction(FrictionEffect):
+    """The part of the asymmetry that is as much more forward as it is less backward, and nothing at rest.
+
+    No effect of a plant: of an asymmetry of another form this part is another, and the mean level is not.
+    """
+
+    name = "directional_friction"
+    words = "friction of a direction"
+    ports = (Port.TABLE,)
+    parameters = (Parameter("delta_force", "N", size=10.0),)
+
+    def level(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
+        """Level that it adds [N]."""
+        return p["delta_force"] * (forward(motion.velocity) - 0.5)
 
 
 class CoulombAsymmetry(FrictionEffect):
@@ -33,9 +48,9 @@ class CoulombAsymmetry(FrictionEffect):
     curve_over = "table_velocity"
 
     @property
-    def curved(self) -> ConstantForce:
-        """The constant force dF/2: a difference of the directions that is another at another speed is such a force."""
-        return ConstantForce.of(force=0.5 * number(self.values["delta_force"]))
+    def curved(self) -> DirectionalFriction:
+        """Its part dF/2 that has the sign of the direction: what two directions differ by may take some speed."""
+        return DirectionalFriction.of(delta_force=number(self.values["delta_force"]))
 
     def level(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Level that it adds [N]."""
