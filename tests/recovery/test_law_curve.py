@@ -9,7 +9,7 @@ import pytest
 
 from feeddrive.diagnosis.finding.curve_in_place import of_its_own_form
 from feeddrive.diagnosis.finding.likelier import Taken
-from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_curves, with_curves_of
+from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_curves, with_curves_anew, with_curves_of
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.law_curve import STEPS, law_curves
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
@@ -89,6 +89,20 @@ def test_a_law_of_another_form_needs_no_second_name(planted: Planted, first: str
 )
 def test_a_second_effect_is_no_curve_of_the_first(planted: tuple[Planted, ...], names: tuple[str, str]) -> None:
     assert asked(problem_of(*planted), *names)[0] is None
+
+
+@pytest.mark.parametrize("width", [0.004, 0.015, 0.04])
+def test_a_step_that_takes_some_speed_keeps_its_size_beside_its_curve(width: float) -> None:
+    """The mean level tells the difference of the directions whole; alone the law takes a mean of its even part.
+
+    A curve that is of another kind at rest left half of it to a declared friction, 1.8 times itself.
+    """
+    problem = problem_of(Relative(CoulombAsymmetry(30.0), "soft", {"asymmetry_width": width}))
+    alone = fit(problem, [start("coulomb_asymmetry")])
+    _, opened = likeliest_curve(problem, alone, COUNT)
+    there = fit(with_curves_anew(opened, alone.effects), alone.effects)
+    assert there.effects[0].values["delta_force"] == pytest.approx(30.0, rel=0.2)  # what its curve takes of the law
+    assert there.squared_error < 1.3 * len(there.residual) < alone.squared_error
 
 
 def test_the_curve_of_a_law_is_asked_before_a_set_that_lacks_the_law() -> None:
