@@ -88,7 +88,7 @@ def started(problem: Problem, name: str) -> list[Effect]:
 def test_start_leads_to_the_planted_values(axis: str, name: str) -> None:
     effect = example(axis, name)
     problem = problem_of(axis, effect)
-    (start,) = started(problem, name)
+    start, *_ = started(problem, name)
     found = fit(problem, (start,))
     for key, value in in_the_package(effect, axis).values.items():
         # the damper of a mode is a width of 2 Hz in a spectrum of some seconds
@@ -134,7 +134,7 @@ def test_compliance_over_the_square_of_the_place_is_a_parabola_of_ours(axis: str
     """1 + b u^2 = 1 + b u - b u (1 - u), so that m is -b / 4."""
     planted_law = Relative(planted.StiffnessVsPosition(share_over_stroke=0.4), "square", {"stroke_power": 2.0})
     problem = problem_of(axis, planted_law)
-    (start,) = started(problem, "stiffness_vs_position")
+    _, start = started(problem, "stiffness_vs_position")
     found = fit(problem, (start,))
     assert found.effects[0].values["share_over_stroke"] == pytest.approx(0.4, rel=0.02)
     assert found.effects[0].values["middle_compliance"] == pytest.approx(-0.25 * 0.4 / 0.6, rel=0.05)
@@ -147,7 +147,7 @@ def test_screw_held_at_both_ends_gives_way_most_halfway(axis: str) -> None:
     low, high = AXES[axis].travel
     law = EFFECTS["stiffness_vs_position"].of(share_over_stroke=0.0, middle_compliance=0.3, low=low, high=high)
     problem = dataclasses.replace(problem, evidence=(drawn(problem.plant, problem.evidence[0], (law,), 5),))
-    (start,) = started(problem, "stiffness_vs_position")
+    _, start = started(problem, "stiffness_vs_position")
     found = fit(problem, (start,))
     assert found.effects[0].values["middle_compliance"] == pytest.approx(0.3, rel=0.03)
     assert found.effects[0].values["share_over_stroke"] == pytest.approx(0.0, abs=0.01)

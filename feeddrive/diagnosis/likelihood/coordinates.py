@@ -123,6 +123,8 @@ def _unused(effect: Effect, plant: Plant) -> set[str]:
     if effect.name == "friction_vs_position":
         as_table = isinstance(effect.values["position"], tuple)
         return {"peak", "centre", "half_width"} if as_table else {"delta_force"}
+    if effect.name == "stiffness_vs_position":
+        return set() if effect.values["middle_compliance"] else {"middle_compliance"}
     if effect.name == "presliding":
         return set() if effect.values["break_away"] else {"break_away"}
     if effect.name == "ambient_drift":

@@ -31,6 +31,9 @@ LEAST_LAG = 0.004
 less than what an effect must take away of all channels together, and twice what the best of the forces tried takes from
 noise in some seconds."""
 
+PARABOLA = 0.01
+"""Compliance halfway that a parabola begins with: one of none is a straight line, which has a value less."""
+
 FORCES = 24
 """Forces F1 that are tried, up to the greatest transmitted one."""
 
@@ -77,14 +80,18 @@ def stiffness(scene: Scene) -> list[list[Effect]]:
 
 
 def stiffness_vs_position(scene: Scene) -> list[list[Effect]]:
-    """None over the stroke, if the lag follows force times place, or its square, beside the stiffness everywhere.
+    """A straight line and a parabola, if the lag follows force times place or its square beside a stiffness.
 
     The stroke is the declared one, or where none is declared that of the recordings.
     """
     low, high = scene.plant.stroke or _travelled(scene)
     lag, force = _lag(scene), _transmitted(scene)
+    forms: list[list[Effect]] = [
+        [StiffnessVsPosition.of(share_over_stroke=0.0, middle_compliance=middle, low=low, high=high)]
+        for middle in (0.0, PARABOLA)
+    ]
     if lag is None:
-        return [[StiffnessVsPosition.of(share_over_stroke=0.0, low=low, high=high)]]
+        return forms
     stretch = force / nut_stiffness(scene.plant)
     along = (scene.runs[scene.longest].table_position - low) / (high - low)
     beside = _beside_values(scene)
@@ -104,7 +111,7 @@ def stiffness_vs_position(scene: Scene) -> list[list[Effect]]:
     taken = columns @ np.linalg.lstsq(columns, lag, rcond=1e-10)[0]
     if float(taken @ taken) < LEAST_LAG * len(growing) * float(lag @ lag):
         return []
-    return [[StiffnessVsPosition.of(share_over_stroke=0.0, low=low, high=high)]]
+    return forms
 
 
 def _beside_values(scene: Scene) -> Whitener:
