@@ -45,10 +45,15 @@ def test_a_declared_value_is_named_once_what_stood_for_it_is_denied(tmp_path: Pa
     assert friction.parameters["coulomb_factor"].value == pytest.approx(1.995, rel=VALUE)
 
 
-def test_no_change_of_the_judged_recording_spares_a_name_that_it_does_without(tmp_path: Path) -> None:
-    """A delay of 0.5 µs took the place of a stiffness over the stroke: the plant as declared meets the other stroke."""
+def test_a_compliance_over_the_square_of_the_place_is_no_delay(tmp_path: Path) -> None:
+    """A delay of 0.5 µs took the place of a stiffness over the stroke, five times the floor on the other stroke."""
     found = diagnosed(701_219, tmp_path)
-    assert found.effects == ()
+    (stiffness,) = found.effects
+    assert stiffness.name == "stiffness_vs_position"
+    share = 0.2009
+    assert stiffness.parameters["share_over_stroke"].value == pytest.approx(share, rel=VALUE)
+    # b u^2 is b u - b u (1 - u)
+    assert stiffness.parameters["middle_compliance"].value == pytest.approx(-0.25 * share / (1 - share), rel=VALUE)
     for channel in found.channels:
         assert channel.after.rms < 1.05 * channel.before.rms  # the level of noise is known to some per cent
 
