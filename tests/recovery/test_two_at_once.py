@@ -15,7 +15,7 @@ from tests.recovery.test_spring_and_mode import problem_of, recordings
 
 @pytest.mark.parametrize("force", [-12.0, -9.0])
 def test_a_bristle_beside_friction_that_drops_with_speed(force: float) -> None:
-    """Alone either leaves the table 11 times its noise off, by jumps at reversals, which no block left out tells."""
+    """Alone either leaves jumps at reversals, many times the noise, and is as likely as nothing."""
     fitted, judged = recordings(
         "light",
         planted.Presliding(stiffness=3.0e6, damping=4000.0, break_away=0.8),
@@ -25,7 +25,7 @@ def test_a_bristle_beside_friction_that_drops_with_speed(force: float) -> None:
     found, _ = diagnose(axis_plant("light"), [fitted], [judged])
     named = {one.name: one.parameters for one in found.effects}
     assert set(named) == {"presliding", "stribeck"}
-    # intervals of 95 % are 1 to 4 % wide either way
+    # beside a bristle that slips throughout, a form of its own, they are 7 and 11 % off
     assert named["stribeck"]["delta_force"].value == pytest.approx(force, rel=0.05)
     assert named["presliding"]["stiffness"].value == pytest.approx(3.0e6, rel=0.05)
 

@@ -42,7 +42,7 @@ def two_at_once(
         if first.fit.squared_error > (1 - FAIR_PART) * found.squared_error:
             break
         try:
-            alone = fit(problem, (*found.effects, first.fit.effects[-1]), iterations=JOINT_ITERATIONS)
+            alone = fit(problem, first.fit.effects, iterations=JOINT_ITERATIONS)
             beside = ask(problem, alone)
             if beside is None:
                 continue

@@ -177,12 +177,16 @@ _SOFT_PARTS = {
 def _stiffness_vs_position(v: Mapping[str, Value]) -> str:
     share = _one(v["share_over_stroke"])
     middle = _one(v["middle_compliance"])
-    where, side = "falls" if share > 0 else "rises", "above" if middle > 0 else "below"
-    return (
+    where, side = "falls" if share > 0 else "rises", "more" if middle > 0 else "less"
+    along = (
         f"The axial stiffness {where} by {percent(abs(share))} from {1e3 * _one(v['low']):.0f} mm to "
-        f"{1e3 * _one(v['high']):.0f} mm, and halfway the drive gives way by {percent(abs(middle))} {side} the "
-        "straight line: the free length of a screw, straight where it is held at one end and a parabola where both are;"
-        " or a bearing that is not the one declared."
+        f"{1e3 * _one(v['high']):.0f} mm"
+    )
+    if not middle:
+        return f"{along}: the free length of a screw held at one end, or a bearing that is not the one declared."
+    return (
+        f"{along}, and halfway the drive gives way by {percent(abs(middle))} {side} than a straight line between them: "
+        "the free length of a screw that both ends hold, or a bearing that is not the one declared."
     )
 
 

@@ -19,8 +19,8 @@ line, leaves it one. The law is exact for both; `feeddrive lump` writes it.
 Both go on beyond x_l and x_h, of which either may be the higher one; between a twentieth and twenty times the declared
 stiffness it ends. Conservative: with the spring's energy U(e, k(x)) the table feels -dU/dx as well (0.3 N at 10 kN on
 the bench axis). The damper stays. It multiplies with another one. In a chain with a distributed screw, whose axial
-stiffness follows from the nut's place already, it acts on the nut's own spring alone. A diagnosis fits a,
-and m where it is likelier.
+stiffness follows from the nut's place already, it acts on the nut's own spring alone. A diagnosis fits
+a, and m where that is likelier.
 Source: paper 004, eq. (6); two springs in parallel for both ends held.
 """
 
