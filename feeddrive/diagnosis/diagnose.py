@@ -18,7 +18,7 @@ from feeddrive.diagnosis.certainty.next_experiment import next_experiments
 from feeddrive.diagnosis.certainty.one_sided import all_intervals
 from feeddrive.diagnosis.certainty.preferred import judged_apart, judged_as_good, with_the_preferred
 from feeddrive.diagnosis.certainty.uncertainty import certainty
-from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.judging.denied_again import settled_names
 from feeddrive.diagnosis.judging.effect_results import effect_results, refused_effects
 from feeddrive.diagnosis.judging.judge import Judged, channel_results, judged_recordings, prepared_for_judging
@@ -31,6 +31,7 @@ from feeddrive.diagnosis.judging.veto import not_worse_than_declared, without_de
 from feeddrive.diagnosis.judging.where_fitted import share_where_fitted
 from feeddrive.diagnosis.ledger.entry import kept_of
 from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.row_steps import in_told_steps
 from feeddrive.diagnosis.numbers.doubted import sentence, without_wrong
@@ -44,12 +45,15 @@ from feeddrive.diagnosis.recordings.rehoming import rehomed_plant
 from feeddrive.diagnosis.simulated.loop_evidence import refuse_unfit_loop
 from feeddrive.diagnosis.simulated.refinement import Refinement, refined
 from feeddrive.diagnosis.starts.needs import WITHOUT_TORQUE
+from feeddrive.diagnosis.suspicion.as_recorded import error_within_tolerances
+from feeddrive.diagnosis.suspicion.fault_alone import faults_alone, takes_most
 from feeddrive.diagnosis.suspicion.logged import declared_hold, declared_sentence, hold_of, may_be_logged, open_lag
 from feeddrive.diagnosis.suspicion.logged import sentence as held_for
 from feeddrive.diagnosis.suspicion.logged_rows import with_recorder_that_holds
 from feeddrive.diagnosis.suspicion.quality import Quality, flawed, read_otherwise
 from feeddrive.diagnosis.suspicion.recording_faults import refuse_faulty
 from feeddrive.diagnosis.suspicion.suspects import (
+    MOST,
     Suspect,
     again,
     beyond_its_constant,
@@ -129,7 +133,9 @@ def diagnose(
         return _settled(begun, in_the_loop, progress, start)
 
     begun = begin((recordings, validation), declared, measured)
-    settled, hold = settle(begun), declared
+    alone = _fault_alone(begun, lambda files: begin(files, declared, measured), settle, progress)
+    begun, settled = alone or (begun, settle(begun))
+    hold = declared
     if hold is None and may_be_logged(every):
         found = settled.searched.search
         spans = all_intervals(found.problem, found.fit, certainty(found.problem, found.fit))
@@ -143,7 +149,8 @@ def diagnose(
     begun, settled, doubted = _without_wrong_numbers(begun, settled, settle)
     progress("asking whether it is the recorder")
     kept = [number for number in measured if number not in doubted]
-    begun, settled = _without_fault(begun, settled, lambda files: begin(files, hold, kept), settle)
+    if alone is None:
+        begun, settled = _without_fault(begun, settled, lambda files: begin(files, hold, kept), settle)
     logged = () if hold is not None else open_lag(settled.searched.search.fit.effects, every)
     begun = replace(begun, notes=(*begun.notes, *logged))
     return _reported(plant, begun, settled, doubted, progress)
@@ -316,35 +323,79 @@ def _names(found: Search) -> set[str]:
     return {effect.name for effect in found.fit.effects}
 
 
+def _fault_alone(
+    begun: _Begun, begin: Callable[[Files], _Begun], settle: Callable[[_Begun], _Settled], progress: Progress
+) -> tuple[_Begun, _Settled] | None:
+    """What was found in the recordings as mended of a fault of the recorder that alone leaves noise; None for none.
+
+    Asked before any effect. A round beside the recordings as they are says whether one effect leaves as little.
+    """
+    if len(begun.problem.evidence) > 1:  # what differs between recordings goes first
+        return None
+    problem = calibrated(begun.problem)
+    mended = [_mended(begun, fault, begin) for fault in faults_alone(problem)]
+    able = [one for one in mended if one is not None and takes_most(one.problem, problem)]
+    if not able:
+        return None
+    best = min(able, key=lambda one: error_within_tolerances(one.problem, fit(one.problem, ()), problem))
+    progress("it may be the recorder: asking for an effect that leaves as little")
+    first = search(problem, progress, most_rounds=1)
+    if not is_worth_a_search(best.fault, best.problem, first):
+        return None
+    settled = settle(best.begun)
+    return (best.reported(), settled) if is_better(best.fault, settled.searched.search, first) else None
+
+
+@dataclass(frozen=True)
+class _Mended:
+    """Recordings mended of a fault, the problem with their declared values calibrated, and the fault."""
+
+    begun: _Begun
+    problem: Problem
+    fault: Suspect
+
+    def reported(self) -> _Begun:
+        """The recordings with the fault among what was mended of them."""
+        return replace(self.begun, quality=(*self.begun.quality, self.fault.quality(self.begun.files[0])))
+
+
+def _mended(begun: _Begun, fault: Suspect, begin: Callable[[Files], _Begun]) -> _Mended | None:
+    """The recordings without a fault, and without what is left of it in them, as a size is read from slopes.
+
+    None where what it makes of the recordings is none of any machine.
+    """
+    for _ in range(2):
+        files = [[fault.mended(recording) for recording in part] for part in begun.files]
+        try:
+            other = begin((files[0], files[1]))
+        except InputError:
+            return None
+        problem = calibrated(other.problem)
+        left = again(problem, fault.kind)
+        if left is None:
+            break
+        fault = replace(fault, deviation=left.deviation)
+        if abs(left.size) < left.deviation:
+            break
+        fault = replace(fault, size=fault.size + left.size)
+        if abs(fault.size) > MOST[fault.kind]:
+            return None
+    return _Mended(other, problem, fault)
+
+
 def _without_fault(
     begun: _Begun, settled: _Settled, begin: Callable[[Files], _Begun], settle: Callable[[_Begun], _Settled]
 ) -> tuple[_Begun, _Settled]:
-    """What was found, in the recordings as mended where a fault of the recorder says more than what was found in them.
-
-    A fault is read from slopes, so that what is left of it in the mended recordings is mended as well.
-    """
+    """What was found, in recordings mended of a fault where that says more than what was found in them as they are."""
     budget = begun.problem.budget
     fault = None if budget.skips("whether it is the recorder") else suspected(settled.searched.search)
-    if fault is None:
+    mended = None if fault is None else _mended(begun, fault, begin)
+    if mended is None or not is_worth_a_search(mended.fault, mended.problem, settled.searched.search):
         return begun, settled
-    left: Suspect | None = fault
-    for _ in range(2):
-        mended = [[fault.mended(recording) for recording in part] for part in begun.files]
-        try:
-            other = begin((mended[0], mended[1]))
-        except InputError:  # what it makes of the recordings is none of any machine
-            return begun, settled
-        problem = calibrated(other.problem)
-        left = again(problem, fault.kind)
-        if left is None or abs(left.size) < left.deviation:
-            break
-        fault = replace(fault, size=fault.size + left.size, deviation=left.deviation)
-    if not is_worth_a_search(fault, problem, settled.searched.search):
+    again_settled = settle(mended.begun)
+    if not is_better(mended.fault, again_settled.searched.search, settled.searched.search):
         return begun, settled
-    again_settled = settle(other)
-    if not is_better(fault, again_settled.searched.search, settled.searched.search):
-        return begun, settled
-    return replace(other, quality=(*other.quality, fault.quality(mended[0]))), again_settled
+    return mended.reported(), again_settled
 
 
 def _without_wrong_numbers(

@@ -115,14 +115,18 @@ class _Asked(NamedTuple):
 
 
 def search(
-    problem: Problem, progress: Callable[[str], None] = lambda text: None, start: Search | None = None
-) -> Search:  # fmt: skip
+    problem: Problem,
+    progress: Callable[[str], None] = lambda text: None,
+    start: Search | None = None,
+    most_rounds: int = MOST_ROUNDS,
+) -> Search:
     """Find the effects that the declared plant lacks.
 
     Args:
         problem: declared plant and recordings.
         progress: called with a line that says what is going on.
         start: a search to go on from, without the names that it denies.
+        most_rounds: after which it ends with what it has.
 
     Returns:
         The effects found, fitted together, and the ledger of the search.
@@ -140,7 +144,7 @@ def search(
     near: tuple[Near, ...] = ()
     tried = start.tried if start is not None else 0
     problem, found = balanced(problem, found)
-    while len(rounds) < MOST_ROUNDS and not (rounds and problem.budget.skips("further rounds of the search")):
+    while len(rounds) < most_rounds and not (rounds and problem.budget.skips("further rounds of the search")):
         number = len(rounds) + 1
         progress(f"round {number}: {len(found.effects)} effects so far")
         asked = _asked(problem, found, impossible, denied, number)

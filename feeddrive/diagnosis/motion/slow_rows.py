@@ -42,6 +42,10 @@ from feeddrive.typing import BoolArray, FloatArray
 SLOWEST_CYCLE = 2e-3
 """Cycle of a servo loop at most [s]: those of machine tools take 0.03 to 2 ms."""
 
+CLOCK_OFF = 0.05
+"""Share by which times may be off, so that rows of the slowest cycle are still of one: no drive or logger writes rows
+2.0 to 2.1 ms apart by design."""
+
 ROUGH = 3.0
 """Rms of fourth differences, as far as the filter reaches, over that of the quietest tenth, beyond which it is no
 noise: five independent ones exceed 2.4 once in 10^5, and the quietest tenth is a fifth below the mean."""
@@ -55,7 +59,7 @@ FEWEST_ROWS = 100
 
 def is_slow(recording: Recording) -> bool:
     """Whether rows are further apart than any drive's cycles."""
-    return recording.sample_time > SLOWEST_CYCLE * (1 + 1e-6)
+    return recording.sample_time > (1 + CLOCK_OFF) * SLOWEST_CYCLE
 
 
 def known_motion(recording: Recording, plant: Plant, band: Band) -> BoolArray:

@@ -48,7 +48,9 @@ from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
 from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.diagnosis.recordings.recordings import is_shift
+from feeddrive.diagnosis.suspicion.as_recorded import error_within_tolerances
 from feeddrive.diagnosis.suspicion.quality import Quality
+from feeddrive.effects.base import Effect
 from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
 
@@ -57,6 +59,10 @@ CLOCK, GAIN, DRIFT = "clock_rate", "channel_gain", "channel_drift"
 LEAST = {CLOCK: 1e-3, GAIN: 5e-3, DRIFT: 5e-3}
 """Logarithm of a factor that is a fault: a quartz misses by 1e-4 at most, a calibrated current by half a per cent, and
 so does its zero, of its range, which is at least the largest torque that was recorded."""
+
+MOST = {CLOCK: math.log(4.0), GAIN: math.log(1e4), DRIFT: 10.0}
+"""Logarithm of a factor that a recorder has at most: a clock counts rows as samples or as half-cycles, a torque is in
+mN m or in per cent of a small rated one. What asks for more is no fault of the recorder."""
 
 STEP = 1e-3
 """Change of the logarithm of a clock from which its column is taken."""
@@ -182,15 +188,18 @@ def is_worth_a_search(fault: Suspect, mended: Problem, found: Search) -> bool:
     if fault.beside:
         return True
     problem, _ = _begun(found)
-    effects, least, left = found.fit.effects, math.inf, _over_noise_of(mended, problem).plain_error(())
+    effects, least = found.fit.effects, math.inf
+    left = error_within_tolerances(mended, fit(mended, (), iterations=0), problem)
+    if not effects:
+        return left < error_within_tolerances(found.problem, found.fit, problem) / SAME_ERROR
     if len(effects) == 1:  # at its end, which a fit from the declared values on need not reach
-        least = _over_noise_of(found.problem, problem).plain_error(effects)
+        least = error_within_tolerances(found.problem, found.fit, problem)
         if len(found.fit.coordinates) == 1 and left < 1 / LEVEL**2 and not left < least / SAME_ERROR:
             return False  # one value for one, and what is left is noise, of which a name takes nothing
     for effect in effects:
         stated, said = said_by_effects(problem, [effect])
         there, alone = refitted(stated, fit(stated, said))
-        least = min(least, there.plain_error(alone.effects))
+        least = min(least, error_within_tolerances(there, alone, there))
     return left <= SAME_ERROR * least
 
 
@@ -204,38 +213,13 @@ def _begun(found: Search) -> tuple[Problem, Fit]:
     return problem, empty
 
 
-def _over_noise_of(problem: Problem, first: Problem) -> Problem:
-    """Recordings, mended or not, over the noise that was read of them as they were recorded.
-
-    Two readings of a level differ by some per cent, and sets are told by half of one. A row's noise is what it is
-    whatever its time; as much of it as the band takes is in the band, and a torque times a factor has it times that.
-
-    Args:
-        problem: of the recordings, with what was found or mended.
-        first: of the recordings as they are, nothing being found.
-    """
-    evidence = []
-    for e, other in zip(problem.evidence, first.evidence, strict=True):
-        assert isinstance(e, AxisEvidence) and isinstance(other, AxisEvidence)  # no other has a suspect
-        taken = e.band.noise_gain / other.band.noise_gain
-        noise = {name: its * taken * _factor(other, e, name) for name, its in other.noise.items()}
-        evidence.append(replace(e, noise=noise))
-    return replace(problem, evidence=tuple(evidence))
-
-
-def _factor(first: AxisEvidence, mended: AxisEvidence, name: str) -> float:
-    """What a channel was multiplied by when it was mended; a drift is in no difference of rows."""
-    before, after = (float(np.nanstd(np.diff(one.recording[name]))) for one in (first, mended))
-    return after / before if before > 0 and after > 0 else 1.0
-
-
 def is_better(fault: Suspect, mended: Search, found: Search) -> bool:
     """Whether a fault and what was found beside it say as much as what was found without it, or more with no more.
 
     As much is what chance does for the effects that are spared: for each, less than is asked of any.
     """
     first, _ = _begun(found)
-    before, after = (_over_noise_of(one.problem, first).plain_error(one.fit.effects) for one in (found, mended))
+    before, after = (error_within_tolerances(one.problem, one.fit, first) for one in (found, mended))
     if len(mended.fit.coordinates) + 1 < len(found.fit.coordinates):
         spared = max(1, len(found.fit.effects) - len(mended.fit.effects))
         return after <= (1 + spared * fault.comparison.least) * before
@@ -243,16 +227,21 @@ def is_better(fault: Suspect, mended: Search, found: Search) -> bool:
 
 
 def _is_sure(one: Suspect) -> bool:
-    return abs(one.size) > max(LEAST[one.kind], SURE * one.deviation)
+    return max(LEAST[one.kind], SURE * one.deviation) < abs(one.size) <= MOST[one.kind]
+
+
+def can_be_asked(problem: Problem, effects: Sequence[Effect]) -> bool:
+    """Whether recordings can tell of a fault beside some effects: of motion, with a torque, all of one machine."""
+    if not all(isinstance(e, AxisEvidence) for e in problem.evidence):
+        return False
+    if any(map(is_shift, (*problem.plant.effects, *effects))):
+        return False  # recordings that differ are compared with each other, not with a clock
+    return not any("motor_torque" not in e.channels or e.scaled_from for e in problem.evidence)  # type: ignore[attr-defined]
 
 
 def _asked(problem: Problem, found: Fit) -> list[Suspect]:
     """Every suspect beside a fitted set."""
-    if not all(isinstance(e, AxisEvidence) for e in problem.evidence):
-        return []
-    if any(map(is_shift, (*problem.plant.effects, *found.effects))):
-        return []  # recordings that differ are compared with each other, not with a clock
-    if any("motor_torque" not in e.channels or e.scaled_from for e in problem.evidence):  # type: ignore[attr-defined]
+    if not can_be_asked(problem, found.effects):
         return []
     columns = {
         CLOCK: _clock_column(problem, found), GAIN: _gain_column(problem, found), DRIFT: _drift_column(problem),
@@ -287,12 +276,24 @@ def _beside(problem: Problem, found: Fit, kind: str, column: FloatArray) -> Susp
 
 def _gain_column(problem: Problem, found: Fit) -> FloatArray:
     """The predicted torque, whitened, (m,)."""
-    plant, parts = problem.machine(found.effects), []
+    return _whitened(problem, predicted_torque(problem, found.effects))
+
+
+def predicted_torque(problem: Problem, effects: Sequence[Effect]) -> FloatArray:
+    """The rows of a prediction, (m,), those of all channels but the torque being zero."""
+    plant, parts = problem.machine(effects), []
     for e in problem.evidence:
         predicted = problem.predictor.predict(plant, e)
         only = {name: s if name == "motor_torque" else np.zeros_like(s) for name, s in predicted.items()}
         parts.append(e.weighted(only, e.thinned(e.fit_rows)))
-    return _whitened(problem, np.concatenate(parts))
+    return _with_numbers(problem, np.concatenate(parts))
+
+
+def at_other_clock(problem: Problem, size: float) -> Problem:
+    """The problem with the recordings at the times of a clock that ran exp(-c) as fast."""
+    fault = Suspect(CLOCK, size)
+    evidence = [e.at_other_times(fault.mended(e.recording)) for e in problem.evidence if isinstance(e, AxisEvidence)]
+    return replace(problem, evidence=tuple(evidence))
 
 
 def _drift_column(problem: Problem) -> FloatArray | None:
@@ -304,7 +305,7 @@ def _drift_column(problem: Problem) -> FloatArray | None:
         series = {name: np.zeros(len(e.counted)) for name in e.channels}
         series["motor_torque"] = e.in_band(rate * (e.recording.time - e.recording.time[0]))
         parts.append(e.weighted(series, e.thinned(e.fit_rows)))
-    return _whitened(problem, np.concatenate(parts))
+    return _whitened(problem, _with_numbers(problem, np.concatenate(parts)))
 
 
 def _rate(problem: Problem) -> float:
@@ -317,16 +318,18 @@ def _rate(problem: Problem) -> float:
 def _clock_column(problem: Problem, found: Fit) -> FloatArray | None:
     """What the residual loses per logarithm of a clock, whitened, (m,); None where no other clock can be tried."""
     plant, parts = problem.machine(found.effects), []
-    for e in problem.evidence:
-        assert isinstance(e, AxisEvidence)
-        other = e.at_other_times(Suspect(CLOCK, STEP).mended(e.recording))
+    for e, other in zip(problem.evidence, at_other_clock(problem, STEP).evidence, strict=True):
         rows = e.thinned(e.fit_rows)
         here, there = (e.weighted(problem.predictor.predict(plant, one), rows) for one in (e, other))
         parts.append((there - here) / STEP)
     column = np.concatenate(parts)
-    return _whitened(problem, column) if np.all(np.isfinite(column)) else None
+    return _whitened(problem, _with_numbers(problem, column)) if np.all(np.isfinite(column)) else None
+
+
+def _with_numbers(problem: Problem, column: FloatArray) -> FloatArray:
+    """A column with rows for the numbers measured beside the recordings, by others."""
+    return np.concatenate([column, np.zeros(len(problem.numbers))])
 
 
 def _whitened(problem: Problem, column: FloatArray) -> FloatArray:
-    column = np.concatenate([column, np.zeros(len(problem.numbers))])  # measured beside the recordings, by others
     return column if problem.whitener is None else problem.whitener.applied(column)
