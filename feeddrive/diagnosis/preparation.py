@@ -14,6 +14,7 @@ from feeddrive.diagnosis.heat.warm import is_warm_log, prepare_warm, warm_predic
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.between_rows import with_open_rows
 from feeddrive.diagnosis.motion.prediction import AxisPredictor
 from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.diagnosis.motion.row_steps import in_longest_steps
@@ -133,10 +134,8 @@ def _in_steps(
     plant: Plant, predictor: AxisPredictor, fitted: Sequence[AxisEvidence], judged: Sequence[Evidence]
 ) -> tuple[tuple[AxisEvidence, ...], list[Evidence]]:
     """Recordings in the longest steps of the driven simulation; one that is fitted and judged stays one."""
-    ready = {one: in_longest_steps(one, plant, predictor) for one in fitted}
-    for one in judged:
-        if isinstance(one, AxisEvidence) and one not in ready:
-            ready[one] = in_longest_steps(one, plant, predictor)
+    asked = dict.fromkeys([*fitted, *(one for one in judged if isinstance(one, AxisEvidence))])
+    ready = {one: with_open_rows(in_longest_steps(one, plant, predictor), plant, predictor) for one in asked}
     others = [ready[one] if isinstance(one, AxisEvidence) else one for one in judged]
     return tuple(ready[one] for one in fitted), others
 

@@ -47,7 +47,7 @@ from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
-from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import LEVEL_KNOWN, Standing, gain_between, odds_between
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
@@ -297,13 +297,19 @@ def _ended(problem: Problem, found: Fit) -> tuple[tuple[Problem, Fit] | None, Pr
 
 
 def _is_seen(without: Standing, found: Standing) -> bool:
-    """Whether the square left of a channel is lower with a set than without some of it, by more than it is known to."""
+    """Whether the square left of a channel is lower with a set than without some of it, by more than it is known to.
+
+    Nothing is seen where less than the noise is left without it: what a recording without noise holds is then a share
+    of what the simulation itself misses.
+    """
+    evidence = without.problem.evidence
     pairs = zip(
         without.problem.by_channel(without.fit.residual), found.problem.by_channel(found.fit.residual), strict=True
     )
     return any(
         float(np.mean(rows**2)) < (1 - LEVEL_KNOWN) * float(np.mean(before[name] ** 2))
-        for before, after in pairs
+        and float(np.mean(before[name] ** 2)) * e.left.get(name, 1.0) ** 2 > LEVEL**2 * e.kept
+        for e, (before, after) in zip(evidence, pairs, strict=True)
         for name, rows in after.items()
     )
 

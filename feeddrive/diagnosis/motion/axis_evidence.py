@@ -44,6 +44,8 @@ class AxisEvidence(Evidence):
         law_curves: as `curves`.
         unsure: of every part of the motion that may not be, channel to what that makes of it, in the band, (n,); as
             `gains`.
+        between_rows: of what a drive may do between two rows, channel to what that makes of it, in the band, (n,)
+            (`motion.between_rows`).
         acting: torque as it acts at the rows, of all frequencies, (n,) [N m]; None where it is not known.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
@@ -61,6 +63,7 @@ class AxisEvidence(Evidence):
     added: dict[str, float] = field(default_factory=dict)
     drawn: tuple[MotorMotion, ...] = ()
     unsure: Channels = ()
+    between_rows: Channels = ()
     acting: FloatArray | None = None
     torque_rows: tuple[int, int] | None = None
     weights: dict[str, FloatArray] = field(default_factory=dict)
@@ -126,7 +129,8 @@ class AxisEvidence(Evidence):
         """Channels at some samples as any are, less what motion that is not known, or a lead map, may make of them."""
         weighted = super().weighted(series, rows)
         has_map = self.open_map and self.lead_map is not None and self.lead_map.shape[1] > 0
-        if not (self.unsure or any(self.law_curves.values()) or has_map) or not rows.any():
+        is_open = bool(self.unsure or self.between_rows or any(self.law_curves.values()) or has_map)
+        if not is_open or not rows.any():
             return weighted
         key = rows.tobytes()
         if key not in self._sure:
@@ -142,6 +146,7 @@ class AxisEvidence(Evidence):
             self.evened_unsure[key] = tuple(self.all_evened(part, every) for part in self.unsure)
         others = [part for curve in self.law_curves.values() for part in curve]
         others += self.map_parts if self.open_map else []
+        others += self.between_rows
         return *self.evened_unsure[key], *(self.all_evened(part, every) for part in others)
 
     @property
@@ -290,7 +295,8 @@ class AxisEvidence(Evidence):
         unsure = tuple({**part, name: scale * part[name]} for part in self.unsure)
         recording = replace(self.recording, channels=channels)
         scaled = replace(self, recording=recording, measured=measured, noise=noise, added=added)
-        return replace(scaled, unsure=unsure, evened_unsure={})
+        between = tuple({**part, name: scale * part[name]} for part in self.between_rows)
+        return replace(scaled, unsure=unsure, between_rows=between, evened_unsure={})
 
 
 def _reach(rows: BoolArray) -> slice:

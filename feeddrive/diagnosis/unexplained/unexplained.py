@@ -20,7 +20,7 @@ from feeddrive.diagnosis.judging.result import ChannelResult
 from feeddrive.diagnosis.likelihood.cross_validation import LEAST_GAIN, compare_left_out, least_gain, left_out_residual
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
-from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import regained
 from feeddrive.diagnosis.unexplained.analysis import Analysis
 from feeddrive.diagnosis.unexplained.carry import analyses_of, forms_of, joint_step, judged_with, tried, with_carried
@@ -96,6 +96,9 @@ def explain_rest(
             again = analyses_of(problem, (*effects, *own), with_carried(judged, *own), [channel])
             analysis = again[channel.name]
         for found, seen in zip(analysis.found, analysis.dependences, strict=True):
+            if channel.after.rms < LEVEL * channel.noise_rms:
+                reasons[channel.name].append(f"{seen.words}: not carried: less is left than the noise of the sensor")
+                continue
             if problem.budget.skips("tables of what no name explains", f"{channel.name} over {found.term.variable}"):
                 reasons[channel.name].append(f"{seen.words}: not carried: there was no time to try")
                 continue
