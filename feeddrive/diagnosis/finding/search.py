@@ -297,21 +297,28 @@ def _ended(problem: Problem, found: Fit) -> tuple[tuple[Problem, Fit] | None, Pr
 
 
 def _is_seen(without: Standing, found: Standing) -> bool:
-    """Whether the square left of a channel is lower with a set than without some of it, by more than it is known to.
+    """Whether the error of a channel is lower with a set than without some of it, by more than its square is known to.
 
-    Nothing is seen where less than the noise is left without it: what a recording without noise holds is then a share
-    of what the simulation itself misses.
+    The error is that which is told, with what comparisons are without. Nothing is seen where less than the noise is left
+    without the set: what a recording without noise holds is then a share of what the simulation misses.
     """
-    evidence = without.problem.evidence
-    pairs = zip(
-        without.problem.by_channel(without.fit.residual), found.problem.by_channel(found.fit.residual), strict=True
-    )
-    return any(
-        float(np.mean(rows**2)) < (1 - LEVEL_KNOWN) * float(np.mean(before[name] ** 2))
-        and float(np.mean(before[name] ** 2)) * e.left.get(name, 1.0) ** 2 > LEVEL**2 * e.kept
-        for e, (before, after) in zip(evidence, pairs, strict=True)
-        for name, rows in after.items()
-    )
+    for e, before, after in zip(found.problem.evidence, _squares(without), _squares(found), strict=True):
+        for name, square in after.items():
+            least = (LEVEL * e.known_to(name)) ** 2
+            if before[name] > least and square < (1 - LEVEL_KNOWN) * before[name]:
+                return True
+    return False
+
+
+def _squares(one: Standing) -> list[dict[str, float]]:
+    """Per recording, channel to the mean square of its error at the fitted samples [SI], its zero left open."""
+    problem = one.problem.settled(one.fit.effects)
+    machine, found = problem.machine(one.fit.effects), []
+    for e in problem.evidence:
+        predicted, rows = problem.predictor.predict(machine, e), e.fit_rows
+        errors = {name: (e.measured[name] - predicted[name])[rows] for name in e.channels}
+        found.append({n: float(np.var(x) if n in e.floating else np.mean(x**2)) for n, x in errors.items()})
+    return found
 
 
 def _without(found: Fit, gone: list[Effect]) -> list[Effect]:
