@@ -46,7 +46,7 @@ from feeddrive.diagnosis.simulated.loop_evidence import refuse_unfit_loop
 from feeddrive.diagnosis.simulated.refinement import Refinement, refined
 from feeddrive.diagnosis.starts.needs import WITHOUT_TORQUE
 from feeddrive.diagnosis.suspicion.as_recorded import error_within_tolerances
-from feeddrive.diagnosis.suspicion.fault_alone import faults_alone, takes_most
+from feeddrive.diagnosis.suspicion.fault_alone import alone_explains, faults_alone
 from feeddrive.diagnosis.suspicion.logged import declared_hold, declared_sentence, hold_of, may_be_logged, open_lag
 from feeddrive.diagnosis.suspicion.logged import sentence as held_for
 from feeddrive.diagnosis.suspicion.logged_rows import with_recorder_that_holds
@@ -133,6 +133,7 @@ def diagnose(
         return _settled(begun, in_the_loop, progress, start)
 
     begun = begin((recordings, validation), declared, measured)
+    begun = begun.ready()
     alone = _fault_alone(begun, lambda files: begin(files, declared, measured), settle, progress)
     begun, settled = alone or (begun, settle(begun))
     hold = declared
@@ -236,13 +237,27 @@ Files = tuple[Sequence[Recording], Sequence[Recording]]
 
 @dataclass(frozen=True)
 class _Begun:
-    """The recordings, the problem, what is judged on, remarks about them, and what was mended of them."""
+    """Recordings before anything was searched.
+
+    Attributes:
+        files: the recordings.
+        problem: of those that are fitted.
+        judged: what is judged on.
+        notes: remarks about them.
+        quality: what was mended of them.
+        calibrated: the problem with its declared values fitted beside no effect, where that was asked for.
+    """
 
     files: Files
     problem: Problem
     judged: list[Evidence]
     notes: tuple[str, ...]
     quality: tuple[Quality, ...]
+    calibrated: Problem | None = None
+
+    def ready(self) -> _Begun:
+        """The recordings with the declared values calibrated; as they are where what differs in several goes first."""
+        return self if len(self.problem.evidence) > 1 else replace(self, calibrated=calibrated(self.problem))
 
 
 @dataclass(frozen=True)
@@ -264,7 +279,7 @@ class _Settled:
 
 
 def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[Effect]) -> _Settled:
-    searched, evidence = search_recordings(begun.problem, progress, start), begun.judged
+    searched, evidence = search_recordings(begun.calibrated or begun.problem, progress, start), begun.judged
     budget = begun.problem.budget
     budget.end_of_search()
     found = searched.search
@@ -330,11 +345,11 @@ def _fault_alone(
 
     Asked before any effect. A round beside the recordings as they are says whether one effect leaves as little.
     """
-    if len(begun.problem.evidence) > 1:  # what differs between recordings goes first
+    problem = begun.calibrated
+    if problem is None:
         return None
-    problem = calibrated(begun.problem)
     mended = [_mended(begun, fault, begin) for fault in faults_alone(problem)]
-    able = [one for one in mended if one is not None and takes_most(one.problem, problem)]
+    able = [one for one in mended if one is not None and alone_explains(one.problem, problem)]
     if not able:
         return None
     best = min(able, key=lambda one: error_within_tolerances(one.problem, fit(one.problem, ()), problem))
@@ -371,6 +386,7 @@ def _mended(begun: _Begun, fault: Suspect, begin: Callable[[Files], _Begun]) -> 
         except InputError:
             return None
         problem = calibrated(other.problem)
+        other = replace(other, calibrated=problem) if len(problem.evidence) == 1 else other
         left = again(problem, fault.kind)
         if left is None:
             break
@@ -402,11 +418,13 @@ def _without_wrong_numbers(
     begun: _Begun, settled: _Settled, settle: Callable[[_Begun], _Settled]
 ) -> tuple[_Begun, _Settled, tuple[MeasuredNumber, ...]]:
     """What was found without measured numbers that are wrong, and these."""
-    problem, settled, wrong = without_wrong(
-        begun.problem, settled, lambda one: one.searched.search, lambda problem: settle(replace(begun, problem=problem))
-    )
+
+    def again_with(problem: Problem) -> _Settled:
+        return settle(replace(begun, problem=problem, calibrated=None))
+
+    problem, settled, wrong = without_wrong(begun.problem, settled, lambda one: one.searched.search, again_with)
     notes = tuple(sentence(one, settled.searched.search) for one in wrong)
-    return replace(begun, problem=problem, notes=(*begun.notes, *notes)), settled, wrong
+    return replace(begun, problem=problem, calibrated=None, notes=(*begun.notes, *notes)), settled, wrong
 
 
 def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], tuple[str, ...]]:

@@ -299,8 +299,8 @@ def _ended(problem: Problem, found: Fit) -> tuple[tuple[Problem, Fit] | None, Pr
 def _is_seen(without: Standing, found: Standing) -> bool:
     """Whether the error of a channel is lower with a set than without some of it, by more than its square is known to.
 
-    The error is that which is told, with what comparisons are without. Nothing is seen where less than the noise is left
-    without the set: what a recording without noise holds is then a share of what the simulation misses.
+    The error is that which is told, with what comparisons are without. Nothing is seen where less than the noise is
+    left without the set: what a recording without noise holds is then a share of what the simulation misses.
     """
     for e, before, after in zip(found.problem.evidence, _squares(without), _squares(found), strict=True):
         for name, square in after.items():

@@ -1,4 +1,4 @@
-"""A fault of the recorder that takes most of what the declared machine leaves: asked before any effect.
+"""A fault of the recorder that alone explains what the declared machine does not: asked before any effect.
 
 A torque in another unit, or times of another clock, is further from the declared machine than any effect. A search
 that begins beside it takes effect after effect, each for a part of the fault. So where the machine as declared leaves
@@ -7,8 +7,7 @@ much, the size c of each fault (`suspects`) is fitted beside it, every declared 
     channel_gain    exp(c) = p'm / p'p of predicted p and measured torque m, as the torque is linear in its gain
     clock_rate      Gauss-Newton steps of c, each halved until it leaves less
 
-A fault counts that takes the larger part of the squared error; what it leaves is for the declared values, and of what
-these leave with and without it the larger part as well.
+A fault is tried that takes the larger part of the squared error, and counts where the declared values then leave noise.
 """
 
 from __future__ import annotations
@@ -70,15 +69,17 @@ def is_explained(problem: Problem) -> bool:
     return problem.plain_error(()) < UNEXPLAINED and contradiction(problem, fit(problem, ())) <= SURE**2
 
 
-def takes_most(mended: Problem, problem: Problem) -> bool:
-    """Whether mended recordings leave noise, or far less than before, and contradict the declared values far less.
+def alone_explains(mended: Problem, problem: Problem) -> bool:
+    """Whether mended recordings leave no more than noise, and contradict the declared values far less than before.
+
+    One that leaves more is asked beside what is found (`suspects`): without the effects that are there, a clock takes
+    some of what they do.
 
     Args:
         mended: the declared values calibrated and nothing found; a value may be beyond its tolerance beside a fault.
         problem: the recordings as they are, so too.
     """
-    left = error_over_noise(mended, problem)
-    if left >= 1 / LEVEL**2 and left >= SHARE * problem.plain_error(()):
+    if error_over_noise(mended, problem) >= 1 / LEVEL**2:
         return False
     return contradiction(mended, fit(mended, ())) <= max(SURE**2, SHARE * contradiction(problem, fit(problem, ())))
 
