@@ -28,13 +28,13 @@ LEAST_SOFTENING = 0.02
 """Stiffness that is lost around zero force, over that under load."""
 
 LEAST_SHARE = 0.003
-"""Deviation of a stiffness from the declared one, a force over the declared Coulomb level of the guide, and a ripple of
-the torque over all declared Coulomb levels. No catalogue knows either to that, but a scale shows a stiffness, and
-without its name it is taken for a play of some nanometres."""
+"""Deviation of a stiffness from the declared one, and a force over the declared Coulomb level of the guide. No
+catalogue knows either to that, but a scale shows it, and without its name it is taken for a play of some nanometres."""
 
 LEAST_MASS_SHARE = 0.001
 """A mass over the declared table mass, what swings on it included, and an inertia over the declared one of its shaft: a
-scale and a torque in steps of a thousandth show no less. So of a torque that a delay moves, over the torque's swing.
+scale and a torque in steps of a thousandth show no less. So of a torque that a delay moves, over the torque's swing,
+and of one that ripples, over all declared Coulomb levels.
 What swings on the table counts as at its resonance, where the table feels 1 / (2 damping) of its mass."""
 
 TINY = 1e-9
@@ -64,7 +64,7 @@ def is_material(effect: Effect, plant: Plant) -> bool:
         return abs(values["factor"] - 1) >= LEAST_SHARE
     if "amplitude" in values and effect.parameter("amplitude").unit == "N m":
         level = declared_level(plant, Port.SCREW) + plant.chain.radius * declared_level(plant, Port.TABLE)
-        return abs(values["amplitude"]) >= LEAST_SHARE * level
+        return abs(values["amplitude"]) >= LEAST_MASS_SHARE * level
     forces = [abs(number) for key, value in effect.values.items() if key in FORCE_KEYS for number in _numbers(value)]
     return not forces or max(forces) >= LEAST_SHARE * declared_level(plant, Port.TABLE)
 
