@@ -51,20 +51,14 @@ EFFECTS = {
     "payload": 'mass = "{size} kg"',
     "friction_vs_position": 'peak = "{size} N"\ncentre = "200 mm"\nhalf_width = "20 mm"',
 }
-SIZES = {
-    "torque_ripple": 0.1,
-    "stribeck": 60.0,
-    "lead_error_periodic": 2.0,
-    "payload": 25.0,
-    "friction_vs_position": 80.0,
-}
 LEADING = {
-    "torque_ripple": ("amplitude", 1.0),
-    "stribeck": ("delta_force", 1.0),
-    "lead_error_periodic": ("amplitude", 1e-6),
-    "payload": ("mass", 1.0),
-    "friction_vs_position": ("peak", 1.0),
+    "torque_ripple": ("amplitude", 0.1, 1.0),
+    "stribeck": ("delta_force", 60.0, 1.0),
+    "lead_error_periodic": ("amplitude", 2.0, 1e-6),
+    "payload": ("mass", 25.0, 1.0),
+    "friction_vs_position": ("peak", 80.0, 1.0),
 }
+"""Name to its leading value: key, size about which it is drawn, and the unit of that [SI]."""
 
 
 def simulated(folder: Path, seed: int, rate: str, effect: str = "", moves: int = 25) -> Recording:

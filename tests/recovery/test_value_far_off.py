@@ -90,6 +90,6 @@ def test_lost_preload_that_is_soft_under_every_force_becomes_the_softer_spring(t
     (spring,) = found.effects
     assert isinstance(spring, StiffnessDeviation)
     # the truth, but for what the other stiffness may take of it, and nothing but noise and quantisation is left
-    assert spring.values["factor"] == pytest.approx(TRUE, rel=0.02)
+    assert spring.values["factor"] == pytest.approx(TRUE, rel=0.03)
     assert problem.plain_error(found.effects) < 1.3
     assert with_softer_spring(softer[0], softer[1], softer[1].effects) is None  # no preload is lost in it

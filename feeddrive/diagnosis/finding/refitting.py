@@ -30,7 +30,7 @@ from feeddrive.effects.chain.stiffness_deviation import WHOLE, StiffnessDeviatio
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 
 HALVINGS = 8
-"""Of the size of friction that pushes, at most: of a two-hundredth nothing is told."""
+"""Of the size of friction that pushes, and of a step that led too far, at most: of a two-hundredth nothing is told."""
 
 
 def refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
@@ -76,11 +76,28 @@ def at_rest(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     problem, variance = with_new_slopes(problem, found.effects), known.variance
     for _ in range(PASSES):
         there, then = stepped_together(problem, found.effects, JOINT_ITERATIONS)
-        there = there.settled(then.effects)
-        if cost(problem, found.effects, variance) - cost(there, then.effects, variance) <= variance:
+        there, effects = there.settled(then.effects), then.effects
+        before, after = cost(problem, found.effects, variance), cost(there, effects, variance)
+        for _ in range(HALVINGS):
+            if after <= before:
+                break
+            there, effects = _half_way(problem, found.effects, there, effects)
+            after = cost(there, effects, variance)
+        if before - after <= variance:
             break
-        problem, found = with_new_slopes(there, then.effects), then
+        problem = with_new_slopes(there, effects)
+        found = fit(problem, effects, iterations=0)
     return problem, fit(problem, found.effects, iterations=0)
+
+
+def _half_way(
+    problem: Problem, effects: Sequence[Effect], there: Problem, others: Sequence[Effect]
+) -> tuple[Problem, tuple[Effect, ...]]:
+    """Declared values and effects in the middle between two places, one of them as far as a step that led too far."""
+    assert problem.calibration is not None and there.calibration is not None
+    middle = there.at_values(0.5 * (problem.calibration.coordinates + there.calibration.coordinates))
+    first, last = (read_coordinates(some, problem.plant) for some in (effects, others))
+    return middle, tuple(write_coordinates(others, problem.plant, 0.5 * (first + last)))
 
 
 def balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
