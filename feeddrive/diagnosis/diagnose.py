@@ -133,7 +133,7 @@ def diagnose(
         return _settled(begun, in_the_loop, progress, start)
 
     begun = begin((recordings, validation), declared, measured)
-    begun = begun.ready()
+    begun = begun if start else begun.ready()  # what was found earlier stands beside the declared values
     alone = _fault_alone(begun, lambda files: begin(files, declared, measured), settle, progress)
     begun, settled = alone or (begun, settle(begun))
     hold = declared
@@ -377,13 +377,13 @@ class _Mended:
 def _mended(begun: _Begun, fault: Suspect, begin: Callable[[Files], _Begun]) -> _Mended | None:
     """The recordings without a fault, and without what is left of it in them, as a size is read from slopes.
 
-    None where what it makes of the recordings is none of any machine.
+    None where that leads to recordings of no machine, or to a fault of no recorder.
     """
     for _ in range(2):
         files = [[fault.mended(recording) for recording in part] for part in begun.files]
         try:
             other = begin((files[0], files[1]))
-        except InputError:
+        except InputError:  # a recording that no machine has made
             return None
         problem = calibrated(other.problem)
         other = replace(other, calibrated=problem) if len(problem.evidence) == 1 else other

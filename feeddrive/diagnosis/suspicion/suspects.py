@@ -61,8 +61,8 @@ LEAST = {CLOCK: 1e-3, GAIN: 5e-3, DRIFT: 5e-3}
 so does its zero, of its range, which is at least the largest torque that was recorded."""
 
 MOST = {CLOCK: math.log(4.0), GAIN: math.log(1e4), DRIFT: 10.0}
-"""Logarithm of a factor that a recorder has at most: a clock counts rows as samples or as half-cycles, a torque is in
-mN m or in per cent of a small rated one. What asks for more is no fault of the recorder."""
+"""Logarithm of a factor that a recorder has at most, and its drift over the largest torque: a clock counts rows as
+samples or as half-cycles, a torque is in mN m or in per cent of a small rated one. What asks for more is no fault."""
 
 STEP = 1e-3
 """Change of the logarithm of a clock from which its column is taken."""
