@@ -8,7 +8,7 @@ all effects together, and the likeliest of them is taken if what it adds also lo
 from __future__ import annotations
 
 from collections.abc import Callable, Container
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -49,6 +49,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import LEVEL_KNOWN, Standing, gain_between, odds_between
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
 from feeddrive.effects.source.constant_force import ConstantForce
@@ -297,28 +298,24 @@ def _ended(problem: Problem, found: Fit) -> tuple[tuple[Problem, Fit] | None, Pr
 
 
 def _is_seen(without: Standing, found: Standing) -> bool:
-    """Whether the error of a channel is lower with a set than without some of it, by more than its square is known to.
+    """Whether the square left of a channel is lower with a set than without some of it, by more than it is known to.
 
-    The error is that which is told, with what comparisons are without. Nothing is seen where less than the noise is
-    left without the set: what a recording without noise holds is then a share of what the simulation misses.
+    What rows do not tell counts here, since the error that is told holds it. Nothing is seen where less than the noise
+    is left without the set: what a recording without noise holds is then a share of what the simulation misses.
     """
     for e, before, after in zip(found.problem.evidence, _squares(without), _squares(found), strict=True):
         for name, square in after.items():
-            least = (LEVEL * e.known_to(name)) ** 2
-            if before[name] > least and square < (1 - LEVEL_KNOWN) * before[name]:
+            if before[name] > LEVEL**2 * e.kept and square < (1 - LEVEL_KNOWN) * before[name]:
                 return True
     return False
 
 
 def _squares(one: Standing) -> list[dict[str, float]]:
-    """Per recording, channel to the mean square of its error at the fitted samples [SI], its zero left open."""
-    problem = one.problem.settled(one.fit.effects)
-    machine, found = problem.machine(one.fit.effects), []
-    for e in problem.evidence:
-        predicted, rows = problem.predictor.predict(machine, e), e.fit_rows
-        errors = {name: (e.measured[name] - predicted[name])[rows] for name in e.channels}
-        found.append({n: float(np.var(x) if n in e.floating else np.mean(x**2)) for n, x in errors.items()})
-    return found
+    """Per recording, channel to the mean square of its error over the noise at the fitted samples."""
+    whole = [replace(e, between_rows=()) if isinstance(e, AxisEvidence) else e for e in one.problem.evidence]
+    problem = replace(one.problem.settled(one.fit.effects), evidence=tuple(whole)).plain
+    recordings = problem.by_channel(problem.unwhitened(one.fit.effects))
+    return [{name: float(np.mean(rows**2)) for name, rows in channels.items()} for channels in recordings]
 
 
 def _without(found: Fit, gone: list[Effect]) -> list[Effect]:
