@@ -135,12 +135,3 @@ def test_a_fault_on_its_own_is_begun_with_its_whole_size(rigid: Plant) -> None:
         wanted = np.log({"channel_gain": 0.03, "clock_rate": 2.0}[kind])
         # friction, off by up to 5 %, is half of the torque
         assert (first.kind, first.size) == (kind, pytest.approx(wanted, abs=0.05))
-
-
-def test_a_clock_is_followed_no_further_than_four_times(rigid: Plant) -> None:
-    run, _ = runs(151)
-    spoilt = with_clock(run, 30.0)
-    problem, _, _ = prepared(rigid, [spoilt], [spoilt], 0.75)
-    assert all(
-        abs(one.size) <= np.log(4.0) + 1e-9 for one in faults_alone(calibrated(problem)) if one.kind == "clock_rate"
-    )

@@ -46,21 +46,21 @@ def faults_alone(problem: Problem) -> list[Suspect]:
     Args:
         problem: recordings, the declared values calibrated and nothing found. Where these explain them, no fault is.
     """
-    if not can_be_asked(problem, ()) or is_explained(problem):
+    if not can_be_asked(problem, ()) or _is_explained(problem):
         return []
     declared = replace(problem.plain, calibration=None)
     residual = declared.unwhitened(())
     before = float(residual @ residual)
     least = {**LEAST, GAIN: max(LEAST[GAIN], _torque_tolerance(problem))}
-    found = []
-    for one in (_gain(declared, residual), _clock(declared, residual)):
-        if one is not None and one[0] < SHARE * before and least[one[2]] < abs(one[1]) <= MOST[one[2]]:
-            found.append(one)
-    gains = [(Comparison(1 - left / before, 0.0, 0.0), size, kind) for left, size, kind in sorted(found)]
-    return [Suspect(kind, size, comparison=gain) for gain, size, kind in gains]
+    asked = filter(None, (_gain(declared, residual), _clock(declared, residual)))
+    return [
+        Suspect(kind, size, comparison=Comparison(1 - left / before, 0.0, 0.0))
+        for left, size, kind in sorted(asked)
+        if left < SHARE * before and least[kind] < abs(size) <= MOST[kind]
+    ]
 
 
-def is_explained(problem: Problem) -> bool:
+def _is_explained(problem: Problem) -> bool:
     """Whether declared values within their tolerances, and no effect, leave no more than noise.
 
     Args:
