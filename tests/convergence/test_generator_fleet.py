@@ -15,14 +15,17 @@ from scipy.integrate import solve_ivp
 
 from tests.generator.axis import BENCH, AxisParameters
 from tests.generator.beside import beside
-from tests.generator.constants import Constants, declared_constants
+from tests.generator.constants import Constants, declared_constants, packed
 from tests.generator.driven import driven
 from tests.generator.effects import (
     Backlash,
+    Effect,
     FrictionVsPosition,
     LeadErrorCumulative,
     Payload,
     PlantedEffects,
+    PreloadLoss,
+    StiffnessVsPosition,
     Stribeck,
     TorqueRipple,
     ViscousAsymmetry,
@@ -32,6 +35,7 @@ from tests.generator.loop import Sampling, closed_loop, open_loop
 from tests.generator.machines import Machine
 from tests.generator.recording import QUICK_STEP, sampling_of
 from tests.generator.runs import at_rest
+from tests.generator.transmission import nut_forces, side_of
 
 Array = np.ndarray
 
@@ -121,6 +125,20 @@ def test_against_radau(kind: str, axis: AxisParameters, effects: tuple[Relative,
         expected.append(float(state[4]))
     assert np.ptp(expected) > 20e-6  # it moves well beyond its free play
     assert np.max(np.abs(found - expected)) < TOLERANCE
+
+
+@pytest.mark.parametrize(
+    "nut", [Backlash(60e-6), PreloadLoss(0.4, 500.0), StiffnessVsPosition(0.3)], ids=lambda one: type(one).__name__
+)
+def test_a_weight_at_rest_does_not_move(nut: Effect) -> None:
+    """A table that hangs in the nut starts where it stays, but for what the screw twists by and swings to."""
+    c = nut.planted(declared_constants(UPRIGHT))
+    state = at_rest(0.1, c)
+    side = side_of(state, c)
+    weight = c.table_mass * c.fall - c.counterbalance
+    assert nut_forces(state, side, packed(c))[2] == pytest.approx(weight, rel=1e-6)
+    hanging = open_loop(np.full(40, weight * c.transmission / c.ratio), state, sampling(UPRIGHT, c, 200), c)
+    assert np.ptp(hanging[:, 4]) < 2.0 * weight * c.transmission**2 / c.torsional_stiffness
 
 
 def moved(encoder_step: float) -> tuple[Array, Array, Sampling, Constants]:

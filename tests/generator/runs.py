@@ -8,15 +8,17 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import brentq
 
 from tests.generator.beside import beside
-from tests.generator.constants import Constants, declared_constants
+from tests.generator.constants import Constants, declared_constants, packed
 from tests.generator.effects import Effect, PlantedEffects
 from tests.generator.lateness import as_recorded, lateness
 from tests.generator.loop import Sampling, closed_loop
 from tests.generator.machines import Machine
 from tests.generator.recording import measured, sampling_of, state_at_rest
 from tests.generator.state import State
+from tests.generator.transmission import nut_forces, side_of
 
 Array = npt.NDArray[np.float64]
 Channels = dict[str, Array]
@@ -94,13 +96,25 @@ def _planted(machine: Machine, effects: tuple[Effect, ...]) -> tuple[Constants, 
 
 
 def at_rest(setpoint: float, c: Constants) -> State:
-    """Return the state that `state_at_rest` does, the weight hanging in the springs."""
+    """Return the state that `state_at_rest` does, the weight hanging in the springs and lying on a flank of the play.
+
+    A table that falls through its free play as a recording begins would tell of the play in those milliseconds alone.
+    """
     state = state_at_rest(setpoint, c)
     if c.fall == 0.0:
         return state
     weight = (c.table_mass + c.mode_mass) * c.fall - c.counterbalance
-    stretched = weight / c.axial_stiffness
-    return state._replace(position=state.position - stretched)
+
+    def lowered(by: float) -> State:
+        return state._replace(position=state.position - by)
+
+    def left_to_carry(by: float) -> float:
+        there = lowered(by)
+        return weight - nut_forces(there, side_of(there, c), packed(c))[2]
+
+    softest = c.axial_stiffness * min(c.preload_ratio, 1.0) * (1.0 - abs(c.stroke_share))
+    furthest = 2.0 * (c.gap + abs(weight) / softest)
+    return lowered(float(brentq(left_to_carry, -furthest, furthest, xtol=1e-15)))
 
 
 def changes(one: Run, without: tuple[Effect, ...], machine: Machine | None = None) -> tuple[Array, Array]:
