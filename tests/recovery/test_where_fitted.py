@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.certainty.uncertainty import certainty, certainty_along
+from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.judging.asked_of_fit import sizes_around_none
 from feeddrive.diagnosis.judging.judge import Judged, prepared_for_judging
 from feeddrive.diagnosis.judging.where_fitted import share_where_fitted, where_fitted
@@ -59,17 +60,23 @@ def judged_with(
 def test_strokes_elsewhere_say_nothing_of_a_spring(rigid: Plant) -> None:
     far = sprung("far", 0.5, 2)
     problem, found, judged = judged_with(rigid, PositionSpring.of(stiffness=50.0, zero=0.0), [far], sprung("near"))
-    assert where_fitted(problem, found, judged, found.effects[0]) == []
+    assert where_fitted(problem, found.effects, judged, found.effects[0]) == []
     share = share_where_fitted(problem, found, judged, 0)
     # what it does to the error is told, and no one says that it fails
     assert share.explains["motor_torque"] < -1.0
     assert not share.carries and not share.shows and share.size == 0.0
 
 
+def test_a_table_takes_no_place_for_what_it_goes_on_as(rigid: Plant) -> None:
+    """Beyond the strokes that are fitted the table of the force stays level, as this spring does there."""
+    found, _ = diagnose(rigid, [sprung("near")], [sprung("far", 0.5, 2)])
+    assert [effect.name for effect in found.effects] == ["position_spring"]
+
+
 def test_where_strokes_overlap_the_law_is_asked_there(rigid: Plant) -> None:
     beside = sprung("beside", 0.08, 2)
     problem, found, judged = judged_with(rigid, PositionSpring.of(stiffness=50.0, zero=0.0), [beside], sprung("near"))
-    (there,) = where_fitted(problem, found, judged, found.effects[0])
+    (there,) = where_fitted(problem, found.effects, judged, found.effects[0])
     every, inside = judged[0].evidence.judged_rows, there.evidence.judged_rows
     position = R * beside["motor_angle"]
     known = R * problem.evidence[0].recording["motor_angle"][problem.evidence[0].fit_rows]
@@ -84,7 +91,7 @@ def test_where_strokes_overlap_the_law_is_asked_there(rigid: Plant) -> None:
 def test_a_law_of_speed_is_asked_up_to_the_speeds_that_were_fitted(rigid: Plant) -> None:
     slow, fast = rigid_run("slow", Truth(), slow=2.0), rigid_run("fast", Truth(seed=2))
     problem, found, judged = judged_with(rigid, ViscousAsymmetry.of(delta_viscous=20.0), [fast], slow)
-    (there,) = where_fitted(problem, found, judged, found.effects[0])
+    (there,) = where_fitted(problem, found.effects, judged, found.effects[0])
     speed = np.abs(np.gradient(R * fast["motor_angle"], fast.sample_time))
     known = np.abs(np.gradient(R * slow["motor_angle"], slow.sample_time))[problem.evidence[0].fit_rows]
     assert there.evidence.judged_rows.any()
@@ -95,7 +102,7 @@ def test_a_law_of_speed_is_asked_up_to_the_speeds_that_were_fitted(rigid: Plant)
 def test_a_law_without_a_variable_is_asked_everywhere(rigid: Plant) -> None:
     far = sprung("far", 0.5, 2)
     problem, found, judged = judged_with(rigid, ConstantForce.of(force=5.0), [far], sprung("near"))
-    assert where_fitted(problem, found, judged, found.effects[0]) == judged
+    assert where_fitted(problem, found.effects, judged, found.effects[0]) == judged
 
 
 NODES = tuple(np.linspace(-0.09, 0.09, 13))

@@ -209,7 +209,7 @@ def _share(found: Search, judged: Sequence[Judged], place: int) -> Share:
     Where that is much, the others are moved by one linear step only, not refitted.
     """
     problem, effects = found.problem, found.fit.effects
-    there = where_fitted(problem, found.fit, judged, effects[place])
+    there = where_fitted(problem, effects, judged, effects[place])
     if not there:
         return unseen(judged)
     judged = there

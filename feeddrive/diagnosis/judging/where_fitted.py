@@ -21,18 +21,18 @@ from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
 
-def where_fitted(problem: Problem, found: Fit, judged: Sequence[Judged], law: Effect) -> list[Judged]:
+def where_fitted(problem: Problem, found: Sequence[Effect], judged: Sequence[Judged], law: Effect) -> list[Judged]:
     """The judged recordings at the samples where a law's variable is within what was fitted; those that have any.
 
     Args:
         problem: what was fitted.
-        found: with the law.
+        found: effects, the law among them.
         judged: recordings.
         law: any effect; one without a variable over which it may have another form is asked everywhere.
     """
     if not problem.predictor.of_motion or not law.curve_over:
         return list(judged)
-    plant = problem.machine(found.effects)
+    plant = problem.machine(found)
     fitted = [_variable(problem, plant, e, law)[e.fit_rows] for e in problem.evidence]
     known = np.concatenate(fitted)
     if not len(known):
@@ -60,7 +60,7 @@ def share_where_fitted(problem: Problem, found: Fit, judged: Sequence[Judged], p
         place: of the effect among those found.
     """
     every = share_of(problem, judged, found.effects, place)
-    there = where_fitted(problem, found, judged, found.effects[place])
+    there = where_fitted(problem, found.effects, judged, found.effects[place])
     if there == list(judged):
         return every
     inside = share_of(problem, there, found.effects, place) if there else unseen(judged)

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, channel_results, judged_residual
 from feeddrive.diagnosis.judging.result import ChannelResult
+from feeddrive.diagnosis.judging.where_fitted import where_fitted
 from feeddrive.diagnosis.likelihood.cross_validation import LEAST_GAIN, compare_left_out, least_gain, left_out_residual
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
@@ -223,6 +224,9 @@ def table_against(
         for found in analyses[channel.name].found[:1]:
             table = tried(problem, (), bare, (), forms_of(found, analyses.values()), channel)
             if isinstance(table, Carried):
+                judged = _where_laws_were_fitted(problem, effects, judged, table.effect)
+                if not judged:
+                    return None
                 having = with_carried(bare, table.effect)
                 by_names, blocks = judged_residual(problem, [(j.after, j.evidence) for j in judged])
                 by_table, _ = judged_residual(problem, [(j.after, j.evidence) for j in having])
@@ -236,6 +240,19 @@ def table_against(
                 mostly = squares[0] - squares[1] > squares[1] - squares[2]
                 return Instead(table, tuple(effect.name for effect in effects), as_good, better, mostly)
     return None
+
+
+def _where_laws_were_fitted(
+    problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], table: Tabulated
+) -> Sequence[Judged]:
+    """The judged samples that laws and the table over their variable are held against each other on.
+
+    Beyond what was fitted the law is a guess and the table goes on level: what either misses there tells of neither.
+    """
+    for law in effects:
+        if law.name in CURVES.get((table.name, table.place), ()):
+            judged = where_fitted(problem, effects, judged, law)
+    return judged
 
 
 def _is_left(problem: Problem, judged: Sequence[Judged]) -> bool:
