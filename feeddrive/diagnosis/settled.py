@@ -1,0 +1,127 @@
+"""What was found, once data not fitted have had their say."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from feeddrive.diagnosis.begun import Begun
+from feeddrive.diagnosis.calibration.calibrate import levelled_alike, weighed_alike
+from feeddrive.diagnosis.certainty.ambiguity import Rival, rivals_of
+from feeddrive.diagnosis.certainty.inclusion import asserted
+from feeddrive.diagnosis.certainty.preferred import judged_apart, judged_as_good, with_the_preferred
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.denied_again import settled_names
+from feeddrive.diagnosis.judging.judge import Judged, prepared_for_judging
+from feeddrive.diagnosis.judging.law_tables import with_law_tables
+from feeddrive.diagnosis.judging.veto import not_worse_than_declared, without_denied
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.motion.row_steps import in_told_steps
+from feeddrive.diagnosis.recordings.recordings_search import Searched, search_recordings
+from feeddrive.diagnosis.recordings.rehoming import rehomed_plant
+from feeddrive.diagnosis.simulated.refinement import Refinement, refined
+from feeddrive.diagnosis.unexplained.unexplained import without_stand_ins
+from feeddrive.effects.base import Effect
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Settled:
+    """What was found, once data not fitted have had their say.
+
+    Attributes:
+        searched: the search, without effects that stand in for others, refined in simulation where that was asked.
+        rivals: per effect, those that would do as well.
+        judged, rehomed: the recordings judged on, and remarks about their zeros.
+        refinement: in closed-loop simulation.
+    """
+
+    searched: Searched
+    rivals: list[list[Rival]]
+    judged: list[Judged]
+    rehomed: tuple[str, ...]
+    refinement: Refinement
+
+
+def settle(begun: Begun, simulate: bool, progress: Progress, start: Sequence[Effect]) -> Settled:
+    """What a search finds and data not fitted bear out.
+
+    Args:
+        begun: the recordings.
+        simulate: refine what was found in the simulated closed loop.
+        progress: called with a line that says what is going on.
+        start: effects found earlier.
+    """
+    searched, evidence = search_recordings(begun.calibrated or begun.problem, progress, start), begun.judged
+    budget = begun.problem.budget
+    budget.end_of_search()
+    found = searched.search
+    machine = found.problem.machine(found.fit.effects)
+    noise = begun.problem.evidence, found.problem.evidence
+    evidence = [
+        in_told_steps(levelled_alike(one, *noise, machine), machine, found.problem.predictor) for one in evidence
+    ]
+    progress("judging on data not fitted")
+    judged, rehomed = _judged(found, evidence)
+    if searched.changes is None:
+        carrying = with_law_tables(found, judged, lambda other: _judged(other, evidence)[0])
+        if carrying is not found:
+            found = carrying
+            judged, rehomed = _judged(found, evidence)
+    if (fewer := without_stand_ins(found, judged)) is not found:
+        found = fewer
+        judged, rehomed = _judged(found, evidence)
+
+    def judge(other: Search) -> list[Judged]:
+        return _judged(other, evidence)[0]
+
+    found, judged = settled_names(found, judged, judge, progress)
+    rivals = rivals_of(found, judged)
+    preferred, ranked = with_the_preferred(found, rivals)
+    put_in = judged if preferred is found else judge(preferred)
+    if preferred is not found and judged_as_good(found.problem, judged, put_in):
+        new = _names(preferred) - _names(found)
+        kept, after = without_denied(
+            preferred, put_in, judge, () if judged_apart(found.problem, judged, put_in) else new
+        )
+        denied = new - _names(kept)
+        if denied:  # what its own evidence denies takes no place: what was taken stands
+            rivals = [[rival for rival in alike if rival.effect.name not in denied] for alike in rivals]
+        else:
+            found, judged = kept, after
+            rivals = ranked if kept is preferred else rivals_of(kept, after)
+    sure = asserted(found)
+    if sure is not found:
+        found, judged = sure, judge(sure)
+        rivals = rivals_of(found, judged)
+    found, judged = not_worse_than_declared(found, judged, judge)
+    judged, rehomed = _judged(found, evidence)
+    refinement = Refinement(found, (judged, rehomed))
+    if simulate and not budget.skips("the simulated loop"):
+        progress("simulating the closed loop, and refining in simulation")
+        refinement = refined(found, refinement.outcome, lambda other: _judged(other, evidence))
+        found, (judged, rehomed) = refinement.found, refinement.outcome
+    changes = searched.changes
+    if changes is not None:  # beside the declared values of the names that are left
+        changes = replace(changes, problem=found.problem, fit=found.fit)
+    return Settled(Searched(found, changes), rivals, judged, rehomed, refinement)
+
+
+def _names(found: Search) -> set[str]:
+    return {effect.name for effect in found.fit.effects}
+
+
+def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], tuple[str, ...]]:
+    """The recordings to judge on, their position-locked effects re-homed where the encoder's zero differs."""
+    problem = found.problem.settled(found.fit.effects)
+    declared, after = problem.plant, problem.machine(found.fit.effects)
+    judged, rehomed = [], []
+    for one in (weighed_alike(each, problem.evidence) for each in evidence):
+        homed = rehomed_plant(problem, found.fit.effects, one)
+        if homed is None:
+            judged.append(prepared_for_judging(problem, one, declared, after))
+        else:
+            judged.append(prepared_for_judging(problem, homed.evidence, declared, homed.plant, homed.shift))
+            rehomed.append(f"{one.recording.name}: {homed.statement}")
+    return judged, tuple(rehomed)
