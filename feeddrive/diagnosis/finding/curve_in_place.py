@@ -1,8 +1,9 @@
 """What is likelier than a further name, or than a declared value beyond its tolerance: a lead map, the curve of a law.
 
 A law of another form than ours leaves something that further names, and declared values, take up each as far as it
-helps. The law with its own curve must leave what counts as noise (`LEVEL`), for where more is left, more is missing
-than a form; or less than the law leaves beside the likeliest name, which is then no more the cause of the rest.
+helps. A curve over the stroke takes up what level it has beside the declared friction. The law with its own curve must
+leave what counts as noise (`LEVEL`), for where more is left, more is missing than a form; or less than the law leaves
+beside the likeliest name, which is then no more the cause of the rest.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from feeddrive.diagnosis.calibration.stated import is_within_tolerance, without_effects
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.likelier import Taken
 from feeddrive.diagnosis.finding.members import member, members_of
@@ -23,6 +25,7 @@ from feeddrive.diagnosis.finding.open_map import (
     with_curves_of,
 )
 from feeddrive.diagnosis.finding.refitting import refitted
+from feeddrive.diagnosis.friction_at_port import declared_level
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
@@ -30,6 +33,9 @@ from feeddrive.diagnosis.likelihood.law_curve import has_curve
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, log_odds, log_prior_of_size, odds_between
 from feeddrive.diagnosis.motion.predictability import has_play
+from feeddrive.effects.base import Port, listed, number
+from feeddrive.effects.friction.friction_deviation import FrictionDeviation
+from feeddrive.effects.friction.friction_vs_position import FrictionVsPosition
 
 TURNS = 3
 """Times that curves are taken anew at most."""
@@ -109,6 +115,31 @@ def curve_of_value(
         return None
     there = fit(opened, found.effects, iterations=JOINT_ITERATIONS)
     return with_its_curves(opened, there) if _leaves_less(Standing(opened, there), Standing(*beyond[:2])) else None
+
+
+def with_level_in_curve(beyond: tuple[Problem, Fit, Comparison]) -> tuple[Problem, Fit] | None:
+    """A set in which the level that a guide has more is that of its curve over the stroke; None where it has none.
+
+    To a recording the two are one number, and a curve with a level is a name less than two.
+
+    Args:
+        beyond: a set with a declared value as an effect beyond its tolerance, the last one.
+    """
+    problem, effects = beyond[0], [*beyond[1].effects]
+    deviation = effects.pop()
+    if not isinstance(deviation, FrictionDeviation) or deviation.port is not Port.TABLE:
+        return None
+    for place, effect in enumerate(effects):
+        if not isinstance(effect, FrictionVsPosition) or not isinstance(effect.values["delta_force"], tuple):
+            continue
+        if is_within_tolerance(deviation.with_values(viscous_factor=1.0), problem.plant):
+            return None
+        more = (number(deviation.values["coulomb_factor"]) - 1) * declared_level(problem.plant, Port.TABLE)
+        curve = tuple(force + more for force in listed(effect.values["delta_force"]))
+        effects[place] = effect.with_values(delta_force=curve)
+        there = without_effects(problem, [deviation], effects)
+        return refitted(there, fit(there, effects))
+    return None
 
 
 def with_its_curves(problem: Problem, found: Fit) -> tuple[Problem, Fit]:

@@ -19,8 +19,14 @@ from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt
 from feeddrive.diagnosis.finding.bristle_form import of_likelier_bristle
-from feeddrive.diagnosis.finding.curve_in_place import curve_of_value, of_no_name, with_its_curves
+from feeddrive.diagnosis.finding.curve_in_place import (
+    curve_of_value,
+    of_no_name,
+    with_its_curves,
+    with_level_in_curve,
+)
 from feeddrive.diagnosis.finding.elsewhere import at_likelier_place
+from feeddrive.diagnosis.finding.flank import with_curve_for_flank
 from feeddrive.diagnosis.finding.likelier import Near, Taken, likelier, of_likelier_law, with_play
 from feeddrive.diagnosis.finding.materiality import is_material_here
 from feeddrive.diagnosis.finding.members import Member, members_of
@@ -154,7 +160,7 @@ def search(
         form = None if unnamed is None else (members_of(unnamed[1].effects), open_curves(unnamed[0]))
         if unnamed is not None and form not in forms:
             forms.add(form)
-            problem, found = with_its_curves(*unnamed)
+            problem, found = with_curve_for_flank(*with_its_curves(*unnamed))
             continue
         after = _refitted_with(asked, found, denied)
         begin = begun_as_declared(problem, found)
@@ -207,7 +213,7 @@ def search(
             continue
         beyond = None if left_out else with_value_beyond(problem, found)
         if beyond is not None and members_of(beyond[1].effects) not in met and beyond[1].effects[-1].name not in denied:
-            instead = curve_of_value(problem, found, beyond, asked.now.count)
+            instead = with_level_in_curve(beyond) or curve_of_value(problem, found, beyond, asked.now.count)
             met |= {members_of(found.effects), members_of((instead or beyond)[1].effects)}
             if instead is not None:
                 problem, found = instead
@@ -270,7 +276,8 @@ def _refitted_with(asked: _Asked, found: Fit, denied: Container[str]) -> tuple[P
     problem = without_effects(taken.problem, found.effects, taken.fit.effects)
     there = refitted(with_curves_of(problem, taken.fit.effects), taken.fit)
     there = as_force(*there, asked.now.count) if ConstantForce.name not in denied else there
-    return of_likelier_bristle(*as_payload(*there, asked.now.count), asked.now.count)
+    there = of_likelier_bristle(*as_payload(*there, asked.now.count), asked.now.count)
+    return with_curve_for_flank(*there)
 
 
 def _ended(problem: Problem, found: Fit) -> tuple[tuple[Problem, Fit] | None, Problem, Fit, list[Effect]]:

@@ -29,9 +29,10 @@ class Linear:
             return {self.key: numbers[0]}
         if self.key != "delta_force":
             return {self.key: tuple(numbers)}
-        # a curve over the stroke is about its mean: a level of its own would be that of the declared friction
-        mean = sum(numbers) / len(numbers)
-        return {self.key: tuple(number - mean for number in numbers)}
+        # a curve over the stroke keeps its level: another one would be another level of the declared friction
+        level = sum(self.read(effect)) * self.size
+        more = (sum(numbers) - level) / len(numbers)
+        return {self.key: tuple(number - more for number in numbers)}
 
 
 @dataclass(frozen=True)
