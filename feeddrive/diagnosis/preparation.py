@@ -96,7 +96,7 @@ def prepared(
     lead = 2 * np.pi * plant.chain.motor_radius
     for recording in (*recordings, *validation):
         _refuse_heat(recording)
-        refuse_copied_setpoint(recording.channels, recording.name)
+        refuse_copied_setpoint(recording)
         check_against_lead(recording, lead, recording.name)
     recordings, validation = (
         [without_unfollowed_setpoint(one, lead) for one in ones] for ones in (recordings, validation)

@@ -16,7 +16,7 @@ from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording, read_recording, write_recording
-from feeddrive.recording.checks.copies import is_copy
+from feeddrive.recording.checks.copies import are_copies, is_copy, refuse_copied_setpoint
 from feeddrive.recording.checks.find_flaws import find_flaws
 from feeddrive.recording.checks.flaws import BAD, CLIPPED, HELD, JOINED, Flaw, filled, flaw, quantisation_step
 from tests.analytic.sound_recordings import sound_recording
@@ -218,6 +218,20 @@ def test_a_position_made_from_the_angle_is_not_compared(null: Recording) -> None
     left = without_copied_position(made, plant)
     assert "table_position" not in left and "not a scale on the table" in left.notes[-1]
     assert "table_position" in without_copied_position(null, plant)
+
+
+def test_a_copy_is_told_beside_samples_that_were_filled(tmp_path: Path, null: Recording) -> None:
+    """Each column is filled for itself where it repeats values: the two are then no copies there."""
+    plant = read_plant(plants_folder() / "bench_axis.toml")
+    setpoint = 0.1 + 0.05 * np.sin(np.pi * null.time)
+    held = setpoint / plant.chain.motor_radius
+    held[3500:3540] = held[3500]
+    found = read_back(tmp_path, null, setpoint=setpoint, motor_angle=held)
+    assert any(one.channel == "motor_angle" and one.rows.size for one in found.flaws)
+    assert not is_copy(found["setpoint"], found["motor_angle"])
+    assert are_copies(found, "setpoint", "motor_angle") and not are_copies(null, "setpoint", "motor_angle")
+    with pytest.raises(InputError, match="setpoint and motor_angle are the same signal"):
+        refuse_copied_setpoint(found)
 
 
 @pytest.mark.parametrize("seed", SEEDS)

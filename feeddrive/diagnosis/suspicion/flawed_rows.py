@@ -15,7 +15,7 @@ from feeddrive.diagnosis.motion.band import END_CUT, Band
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
-from feeddrive.recording.checks.copies import is_copy
+from feeddrive.recording.checks.copies import are_copies
 from feeddrive.recording.checks.flaws import CLIPPED, JOINED, Flaw
 from feeddrive.typing import BoolArray
 from feeddrive.units.quantity import format_quantity
@@ -67,10 +67,7 @@ def refuse_little_left(counted: BoolArray, recording: Recording) -> None:
 
 def without_copied_position(recording: Recording, plant: Plant) -> Recording:
     """Return the recording without a table position that is the motor angle times the lead, where the plant gives."""
-    names = ("motor_angle", "table_position")
-    if not plant.chain.elastic or not all(name in recording for name in names):
-        return recording
-    if not is_copy(recording["motor_angle"], recording["table_position"]):
+    if not plant.chain.elastic or not are_copies(recording, "motor_angle", "table_position"):
         return recording
     channels = {name: samples for name, samples in recording.channels.items() if name != "table_position"}
     note = "table_position is the motor angle times the lead, not a scale on the table: it is not compared"

@@ -4,17 +4,17 @@ A copy changes in the same rows as its source and departs from it by no more tha
 
     max |y - s x - c| <= 0.6 (|s| q_x + q_y)
 
-with the resolutions q. A servo always has an error, and a transmission gives: two sensors differ by more.
+with the resolutions q, at the rows that neither channel had filled on reading. A servo always has an error, and a
+transmission gives: two sensors differ by more.
 """
 
 from __future__ import annotations
-
-from collections.abc import Mapping
 
 import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.recording.checks.flaws import resolution
+from feeddrive.recording.recording import Recording
 from feeddrive.typing import FloatArray
 
 ROUNDED = 0.6
@@ -30,16 +30,28 @@ SIZES = 3
 """Different steps that show a grid: rest and one speed, to and fro, make two at most, whatever resolves them."""
 
 
-def refuse_copied_setpoint(channels: Mapping[str, FloatArray], where: str) -> None:
-    """Refuse a measured motion that is the set-point; channels are (n,) each.
+def refuse_copied_setpoint(recording: Recording) -> None:
+    """Refuse a recording whose measured motion is the set-point.
 
     Raises:
         InputError: the set-point and a measured channel are one signal.
     """
     for name in ("table_position", "motor_angle"):
-        if "setpoint" in channels and name in channels and is_copy(channels["setpoint"], channels[name]):
+        if are_copies(recording, "setpoint", name):
             what = f"setpoint and {name} are the same signal to the last digit, and a servo always has an error"
-            raise InputError(what, where, f"map the actual value to {name}, or leave out the column that is a copy")
+            mend = f"map the actual value to {name}, or leave out the column that is a copy"
+            raise InputError(what, recording.name, mend)
+
+
+def are_copies(recording: Recording, source: str, other: str) -> bool:
+    """Tell whether one channel of a recording is another times a factor; not where it lacks either."""
+    if source not in recording or other not in recording:
+        return False
+    as_read = np.ones(len(recording.time), dtype=np.bool_)
+    for flaw in recording.flaws:
+        if flaw.channel in (source, other):
+            as_read[flaw.rows] = False
+    return is_copy(recording[source][as_read], recording[other][as_read])
 
 
 def is_copy(source: FloatArray, other: FloatArray) -> bool:
