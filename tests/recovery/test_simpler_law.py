@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from feeddrive.diagnosis.finding.scene import scene_of
-from feeddrive.diagnosis.finding.simpler_law import level_everywhere
+from feeddrive.diagnosis.finding.simpler_law import less_than_a_period, level_everywhere
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.prediction import AxisPredictor
@@ -13,6 +14,8 @@ from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.friction.stribeck import Stribeck
+from feeddrive.effects.source.ball_pass_ripple import BallPassRipple
+from feeddrive.effects.source.torque_ripple import TorqueRipple
 from tests.recovery.drawn import drawn
 from tests.recovery.planted import axis_plant, pair
 
@@ -39,3 +42,16 @@ def test_a_stribeck_friction_that_the_speeds_tell_is_none(velocity: float) -> No
     problem = bench_with(law)
     found = fit(problem, (law,))
     assert level_everywhere(problem, found) == []
+
+
+@pytest.mark.parametrize(("periods", "is_none"), [(0.6, True), (0.95, True), (1.3, False), (40.0, False)])
+@pytest.mark.parametrize("port", [Port.MOTOR, Port.SCREW])
+def test_a_sine_of_less_than_a_period_is_none(periods: float, is_none: bool, port: Port) -> None:
+    plant = axis_plant("bench")
+    problem = Problem(plant, (prepare(pair("bench", "null")[0], plant, 1.0),), AxisPredictor())
+    travel = float(np.ptp(problem.evidence[0].measured["table_position"]))
+    lead = 2 * np.pi * (plant.chain.motor_radius if port is Port.MOTOR else plant.chain.radius)
+    law = TorqueRipple if port is Port.MOTOR else BallPassRipple
+    sine = law.of(port, amplitude=0.01, order=periods * lead / travel, phase=0.3)
+    found = fit(problem, (sine,), iterations=0)
+    assert less_than_a_period(problem, found) == ([sine] if is_none else [])

@@ -46,7 +46,7 @@ from feeddrive.diagnosis.finding.refitting import (
 )
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
-from feeddrive.diagnosis.finding.simpler_law import as_force, as_payload, level_everywhere
+from feeddrive.diagnosis.finding.simpler_law import as_force, as_payload, less_than_a_period, level_everywhere
 from feeddrive.diagnosis.finding.spring_law import soft_everywhere
 from feeddrive.diagnosis.finding.two_at_once import two_at_once
 from feeddrive.diagnosis.heat.heat_candidates import is_another
@@ -187,6 +187,7 @@ def search(
             *filter(is_another, found.effects),
             *soft_everywhere(problem, found),
             *level_everywhere(problem, found),
+            *less_than_a_period(problem, found),
         ]
         if others:  # the search goes on with the name that the law has run to
             denied |= dict.fromkeys((effect.name for effect in others), ANOTHER)

@@ -2,7 +2,8 @@
 
 Near a law that has run far from where it is none no slope tells of the simpler one: a spring has a force of some
 thousand newtons with it, a mode beyond the band a mass. So the simpler one is fitted in its place, and odds decide. A
-Stribeck friction that falls beyond all speeds is a level, which is a declared value and fitted in every set.
+Stribeck friction that falls beyond all speeds is a level, which is a declared value and fitted in every set. A sine of
+less than a period is a curve over the stroke.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, variance_along
-from feeddrive.effects.base import Effect, number
+from feeddrive.effects.base import Effect, Port, number
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.chain.structural_mode import StructuralMode, resonates_within
 from feeddrive.effects.friction.stribeck import Stribeck
@@ -91,6 +92,24 @@ def level_everywhere(problem: Problem, found: Fit) -> list[Effect]:
         if flat.squared_error - found.squared_error < 2 * TOLD * variance_along(problem, left, found, flat):
             result.append(effect)
     return result
+
+
+def less_than_a_period(problem: Problem, found: Fit) -> list[Effect]:
+    """Sines over an angle of which the recorded travel shows less than a period: nothing comes again there.
+
+    Such a one is a curve over the stroke, and that is the form of another law.
+    """
+    sines = [effect for effect in found.effects if {"order", "phase"} <= effect.values.keys()]
+    if not sines:
+        return []
+    runs, chain = scene_of(problem, found.effects).runs, problem.plant.chain
+    travel = max(float(np.ptp(run.table_position)) for run in runs)
+
+    def periods(sine: Effect) -> float:
+        radius = chain.motor_radius if sine.port is Port.MOTOR else chain.radius
+        return number(sine.values["order"]) * travel / (2 * np.pi * radius)
+
+    return [sine for sine in sines if periods(sine) < 1]
 
 
 def _apart(found: Fit, name: str) -> tuple[Effect, tuple[Effect, ...]]:
