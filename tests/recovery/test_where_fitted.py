@@ -67,9 +67,13 @@ def test_strokes_elsewhere_say_nothing_of_a_spring(rigid: Plant) -> None:
     assert not share.carries and not share.shows and share.size == 0.0
 
 
-def test_a_table_takes_no_place_for_what_it_goes_on_as(rigid: Plant) -> None:
-    """Beyond the strokes that are fitted the table of the force stays level, as this spring does there."""
-    found, _ = diagnose(rigid, [sprung("near")], [sprung("far", 0.5, 2)])
+@pytest.mark.parametrize("offset", [0.5, 0.15])
+def test_a_table_takes_no_place_for_what_it_goes_on_as(offset: float, rigid: Plant) -> None:
+    """Beyond the strokes that are fitted the table of the force stays level, as this spring does there.
+
+    The other strokes are apart from them, or overlap.
+    """
+    found, _ = diagnose(rigid, [sprung("near")], [sprung("far", offset, 2)])
     assert [effect.name for effect in found.effects] == ["position_spring"]
 
 

@@ -227,7 +227,7 @@ def table_against(
                 judged = _where_laws_were_fitted(problem, effects, judged, table.effect)
                 if not judged:
                     return None
-                having = with_carried(bare, table.effect)
+                having = with_carried([replace(j, after=j.before) for j in judged], table.effect)
                 by_names, blocks = judged_residual(problem, [(j.after, j.evidence) for j in judged])
                 by_table, _ = judged_residual(problem, [(j.after, j.evidence) for j in having])
                 # each way round: the chance part of a gain is taken at the better one
