@@ -25,15 +25,22 @@ from feeddrive.diagnosis.finding.open_map import (
     with_curves_of,
 )
 from feeddrive.diagnosis.finding.refitting import refitted
+from feeddrive.diagnosis.finding.round import Round
 from feeddrive.diagnosis.friction_at_port import declared_level
-from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
+from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.law_curve import has_curve
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, log_odds, log_prior_of_size, odds_between
+from feeddrive.diagnosis.likelihood.set_evidence import (
+    Standing,
+    log_odds,
+    log_prior_of_size,
+    odds_between,
+    same_samples,
+)
 from feeddrive.diagnosis.motion.predictability import has_play
-from feeddrive.effects.base import Port, listed, number
+from feeddrive.effects.base import Effect, Port, listed, number
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.friction.friction_vs_position import FrictionVsPosition
 
@@ -44,16 +51,29 @@ ALIKE = 0.2
 """Share by which a law may have changed for its curve to stay: a deviation of one is then wrong by a fifth."""
 
 
-def of_no_name(problem: Problem, found: Fit, taken: Taken | None, count: int) -> tuple[Problem, Fit] | None:
+def of_no_name(problem: Problem, found: Fit, taken: Taken | None, now: Round) -> tuple[Problem, Fit] | None:
     """A set beside a lead map, or the curve of a law, where that is likelier than any further name; else None.
 
     A map that says nothing beside the likeliest name is none: over part of a stroke its curves are near a line.
+
+    Args:
+        problem: recordings.
+        found: the set at hand.
+        taken: the likeliest set near it; None where none is likelier.
+        now: candidates of this round.
     """
+    count = now.count
     likelier_map = log_odds_of_map(problem, found, count) > max(taken.odds if taken is not None else 0.0, 0.0)
     if likelier_map and (taken is None or log_odds_of_map(taken.problem, taken.fit, count) > 0):
         opened = replace(problem, evidence=tuple(e.with_map(True) for e in problem.evidence))
         return opened, fit(opened, found.effects)
-    return None if taken is None else of_its_own_form(problem, found, taken, count) or _of_another_form(taken, count)
+    if taken is None:
+        return None
+    return (
+        of_its_own_form(problem, found, taken, count)
+        or _of_rival_form(problem, taken, now)
+        or _of_another_form(taken, count)
+    )
 
 
 def of_its_own_form(problem: Problem, found: Fit, taken: Taken, count: int) -> tuple[Problem, Fit] | None:
@@ -99,6 +119,57 @@ def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
         return 0.5 * one[0].left / variance - log_prior_of_size(len(one[1][1].effects), count)
 
     return min(able, key=unlikeliness)[1]
+
+
+def _of_rival_form(problem: Problem, taken: Taken, now: Round) -> tuple[Problem, Fit] | None:
+    """A law over the variable of one that was taken, beside its curve, where that is likelier; else None.
+
+    Not asked where the likeliest set leaves noise.
+
+    Far from its own form a law takes less than two others that share what it does: a friction of two directions that
+    takes some speed was told as one that grows with it and a Stribeck drop. So the other law is begun as large as the
+    one that was taken, and has declared values and a curve of its own, before the two are held against each other. The
+    likeliest set has the curve of one of its laws as well, where one is likely, and both are over one variance.
+    """
+    if _is_noise(taken.problem, taken.fit):
+        return None
+    here = members_of(taken.fit.effects)
+    able: list[tuple[OfNoName, Problem, Fit]] = []
+    for attempt in now.attempts:
+        law = attempt.fit.effects[-1]
+        alike = [one for one in taken.fit.effects if law.curve_over and one.curve_over == law.curve_over]
+        if not alike or member(law) in here or not same_samples(attempt.problem, problem):
+            continue
+        rest = [one for one in taken.fit.effects if member(one) in members_of(attempt.fit.effects)]
+        other = _as_large_as(problem, alike[0], law)
+        there, plain = refitted(problem, fit(problem, [*rest, other], iterations=0))
+        curve, opened = likeliest_curve(there, plain, now.count)
+        if curve.odds > 0:
+            able.append((curve, opened, plain))
+    if not able:
+        return None
+    curve, opened, plain = min(able, key=lambda one: one[0].left)
+    own, _ = likeliest_curve(taken.problem, taken.fit, now.count)
+    named = min(own.left, taken.fit.squared_error) if own.odds > 0 else taken.fit.squared_error
+    spared = log_prior_of_size(len(plain.effects), now.count) - log_prior_of_size(len(taken.fit.effects), now.count)
+    if 0.5 * (named - curve.left) / curve.variance + spared <= 0:
+        return None
+    there = fit(opened, plain.effects, iterations=JOINT_ITERATIONS)
+    return (opened, there) if _leaves_less(Standing(opened, there), Standing(taken.problem, taken.fit)) else None
+
+
+def _as_large_as(problem: Problem, taken: Effect, law: Effect) -> Effect:
+    """A law of a size at which it makes of the recordings as much of what another one does as it can."""
+    dot = square = 0.0
+    for e in problem.evidence:
+        bare, mine, its = (problem.predictor.predict(problem.machine(some), e) for some in ([], [taken], [law]))
+        for name in e.channels:
+            a, b = ((one[name] - bare[name])[e.counted] / e.unit(name) for one in (mine, its))
+            dot, square = dot + float(a @ b), square + float(b @ b)
+    if not square > 0:
+        return law
+    (other,) = write_coordinates([law], problem.plant, read_coordinates([law], problem.plant) * dot / square)
+    return other
 
 
 def curve_of_value(
@@ -163,8 +234,14 @@ def with_its_curves(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
 
 def _leaves_less(curved: Standing, named: Standing) -> bool:
     """Whether a set beside a curve leaves what counts as noise, or less than one with a name, as far as levels tell."""
-    level = _level(curved.problem, curved.fit)
-    return level * LEVEL**2 < 1 or level < LEVEL**2 * _level(named.problem, named.fit)
+    if _is_noise(curved.problem, curved.fit):
+        return True
+    return _level(curved.problem, curved.fit) < LEVEL**2 * _level(named.problem, named.fit)
+
+
+def _is_noise(problem: Problem, found: Fit) -> bool:
+    """Whether what a set leaves counts as noise."""
+    return _level(problem, found) * LEVEL**2 < 1
 
 
 def _level(problem: Problem, found: Fit) -> float:

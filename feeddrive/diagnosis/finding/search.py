@@ -156,7 +156,7 @@ def search(
         progress(f"round {number}: {len(found.effects)} effects so far")
         asked = _asked(problem, found, impossible, denied, number)
         near, tried = asked.near, max(tried, asked.now.count)
-        unnamed = of_no_name(problem, found, asked.taken, asked.now.count)
+        unnamed = of_no_name(problem, found, asked.taken, asked.now)
         form = None if unnamed is None else (members_of(unnamed[1].effects), open_curves(unnamed[0]))
         if unnamed is not None and form not in forms:
             forms.add(form)
