@@ -1,13 +1,19 @@
-"""A rival of a free play predicts what the play leaves open: the two are compared on the samples that both predict."""
+"""Rivals of a free play: compared on the samples that both predict; lost preload by its ratio, as edges may be soft."""
 
 from __future__ import annotations
 
 import math
+from pathlib import Path
+
+import pytest
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated
-from feeddrive.diagnosis.certainty.ambiguity import Residuals, _in_place
+from feeddrive.diagnosis.certainty.ambiguity import AGAINST, _in_place
+from feeddrive.diagnosis.certainty.imitations import imitations_of
+from feeddrive.diagnosis.certainty.rival_odds import Residuals
 from feeddrive.diagnosis.finding.attempt import with_predictable
 from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.finding.spring_law import from_declared
 from feeddrive.diagnosis.judging.judge import prepared_for_judging
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.set_evidence import regained, same_samples
@@ -15,9 +21,12 @@ from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.base import Port
 from feeddrive.effects.friction.stribeck import Stribeck
 from feeddrive.effects.transmission.backlash import Backlash
+from feeddrive.plant.file.plant_file import read_plant
+from feeddrive.recording import read_recording
 from tests.generator import effects as planted
 from tests.generator import recording_pair
 from tests.generator.axis import AXES
+from tests.recovery.fleet.case import case
 from tests.recovery.test_numbers_beside import catalogued
 from tests.recovery.unlisted import recording
 
@@ -37,3 +46,30 @@ def test_declared_values_of_a_rival_are_asked_on_the_samples_of_both() -> None:
     rival = _in_place(found, judged, 0, Stribeck.of(Port.TABLE, delta_force=1.0, velocity=4e-3), mine)
     assert rival is not None
     assert math.isfinite(rival.odds) and rival.odds > 0  # the play is the truth
+
+
+@pytest.mark.parametrize(
+    ("seed", "lag", "takes_its_place"),
+    [
+        (701_359, 1.005e-7, False),  # a play of a step of the encoder, whose edges the steps blur
+        (701_665, 6.7e-8, True),  # lost preload, 0.51: a fifth of a step
+    ],
+)
+def test_a_lost_preload_takes_the_place_of_a_play_by_its_ratio(
+    seed: int, lag: float, takes_its_place: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both are nearer to lost preload than to a play of sharp edges, by more than 20 to 1."""
+    plant_file, fitted, judged_file = case(seed).write(tmp_path)
+    plant, play = read_plant(plant_file), Backlash.of(width=lag)
+    begun, (kept,), _ = prepared(plant, [read_recording(fitted)], [read_recording(judged_file)], 0.75)
+    there = from_declared(calibrated(begun), [play], 0, play)
+    assert there is not None
+    found = Search(there.problem, there.fit, (), (), {})
+    judged = [prepared_for_judging(there.problem, kept, plant, there.problem.machine(there.fit.effects))]
+    mine = Residuals.of(there.problem, there.fit, [(one.after, one) for one in judged])
+    (softer,) = imitations_of(there.fit.effects[0], plant)
+    rival = _in_place(found, judged, 0, softer, mine)
+    assert rival is not None and (rival.odds < -AGAINST) is takes_its_place
+    monkeypatch.setattr("feeddrive.diagnosis.certainty.ambiguity.hardly_carrying", lambda *_: None)
+    beside_sharp_edges = _in_place(found, judged, 0, softer, mine)
+    assert beside_sharp_edges is not None and beside_sharp_edges.odds < -AGAINST

@@ -9,8 +9,8 @@ the sets of all small effects, since to leave such an effect away altogether cos
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from math import log
+from dataclasses import dataclass, replace
+from math import inf, log
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.finding.elsewhere import elsewhere, where
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import odds_of_member
+from feeddrive.diagnosis.finding.spring_law import hardly_carrying
 from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
@@ -39,6 +40,7 @@ from feeddrive.diagnosis.likelihood.set_evidence import (
 from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.stiffness_deviation import PARTS, StiffnessDeviation
+from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.stiffness_budget import participation
 from feeddrive.units.quantity import percent
@@ -249,13 +251,31 @@ def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect
             level = min(float(mine.fitted @ mine.fitted), there.squared_error) / max(len(mine.fitted), 1)
             beyond = excess_beyond(Standing(problem, swapped), Standing(found.problem, found.fit), level)
         its = Residuals.of(common, there, [(j.with_effects(problem, there.effects), j) for j in judged])
+        is_play = isinstance(named, Backlash)
+        soft_edges = _odds_for_soft_edges(Standing(common, there), place, judged, its) if is_play else -inf
     except InputError:
         return None
     if not np.all(np.isfinite(its.fitted)):
         return None
     odds, distance = odds_and_distance(found.problem, judged, mine, its, beyond)
     ratio = float(np.linalg.norm(its.judged) / np.linalg.norm(mine.judged))
-    return Rival(place, swapped, odds, distance, ratio, problem)
+    return Rival(place, swapped, max(odds, soft_edges), distance, ratio, problem)
+
+
+def _odds_for_soft_edges(rival: Standing, place: int, judged: Sequence[Judged], its: Residuals) -> float:
+    """Odds, as a rival's, for a free play of soft edges against the lost preload that would take its place.
+
+    A play whose edges are soft, or blurred by the steps of an encoder, lies between a play of sharp edges and a lost
+    preload at the end of its range. So what is nearer to a lost preload than to sharp edges is none yet: its ratio
+    tells. There is no such play in the place of another effect.
+    """
+    play = hardly_carrying(rival.problem, rival.fit, place)
+    if play is None:
+        return -inf
+    plants = [(j.with_effects(rival.problem, play.effects), j) for j in judged]
+    soft = Residuals.of(rival.problem, play, plants)
+    soft = replace(soft, coordinates=soft.coordinates - 1)  # its ratio is none
+    return -odds_and_distance(rival.problem, judged, its, soft)[0]
 
 
 def _is_idle(problem: Problem, swapped: Fit, place: int) -> bool:

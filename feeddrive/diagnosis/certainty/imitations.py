@@ -38,8 +38,13 @@ def imitations_of(effect: Effect, plant: Plant) -> tuple[Effect, ...]:
         return (Backlash.of(width=min(width, Backlash.parameter("width").maximum)),) if width > 0 else ()
     if number(effect.values["width"]) <= 0:
         return ()
-    force = 0.5 * number(effect.values["width"]) * nut_stiffness(plant) * SOFTENED / (1 - SOFTENED)
-    return (PreloadLoss.of(ratio=SOFTENED, force=min(force, PreloadLoss.parameter("force").maximum)),)
+    return (softened(number(effect.values["width"]), SOFTENED, plant),)
+
+
+def softened(width: float, ratio: float, plant: Plant) -> PreloadLoss:
+    """The lost preload of a ratio that lets the table lag as a free play of some width [m] does."""
+    force = 0.5 * width * nut_stiffness(plant) * ratio / (1 - ratio)
+    return PreloadLoss.of(ratio=ratio, force=min(force, PreloadLoss.parameter("force").maximum))
 
 
 def lost_motion(ratio: float, force: float, plant: Plant) -> float:

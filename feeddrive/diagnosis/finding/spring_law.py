@@ -16,10 +16,10 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibrate import at_declared, moved, recalibrated
 from feeddrive.diagnosis.calibration.value_slopes import ENOUGH
-from feeddrive.diagnosis.certainty.imitations import imitations_of
+from feeddrive.diagnosis.certainty.imitations import imitations_of, lost_motion, softened
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, with_predictable
 from feeddrive.diagnosis.finding.scene import scene_of
-from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
+from feeddrive.diagnosis.likelihood.coordinates import LEAST, at_its_limit, read_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, error_of, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, regained, same_samples, variance_along
@@ -68,6 +68,18 @@ def with_likelier_law(problem: Problem, fitted: Fit, count: int, denied: Contain
         if best is None or odds_between(best, one, count) > 0:
             best = one
     return best
+
+
+def hardly_carrying(problem: Problem, found: Fit, place: int) -> Fit | None:
+    """A set fitted with its lost preload at the ratio at which it is a free play; None where that is not its effect."""
+    law, plant = found.effects[place], problem.plant
+    if not isinstance(law, PreloadLoss):
+        return None
+    lost = lost_motion(number(law.values["ratio"]), number(law.values["force"]), plant)
+    play = softened(lost, LEAST[law.name, "ratio"], plant)
+    ratio = len(read_coordinates(found.effects[:place], plant)) + [*play.values].index("ratio")
+    effects = [*found.effects[:place], play, *found.effects[place + 1 :]]
+    return fit(problem, effects, iterations=JOINT_ITERATIONS, still=[ratio])
 
 
 def from_declared(problem: Problem, effects: Sequence[Effect], place: int, law: Effect) -> Standing | None:
