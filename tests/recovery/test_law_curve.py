@@ -7,9 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.finding.curve_in_place import of_its_own_form
+from feeddrive.diagnosis.finding.curve_in_place import of_its_own_form, of_no_name
 from feeddrive.diagnosis.finding.likelier import Taken
 from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_curves, with_curves_anew, with_curves_of
+from feeddrive.diagnosis.finding.round import one_round
+from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.law_curve import STEPS, law_curves
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
@@ -19,7 +21,7 @@ from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from tests.generator.axis import AXES
-from tests.generator.effects import CoulombAsymmetry, PositionSpring, TorqueRipple, ViscousAsymmetry
+from tests.generator.effects import CoulombAsymmetry, PositionSpring, Stribeck, TorqueRipple, ViscousAsymmetry
 from tests.generator.effects import Effect as Planted
 from tests.generator.effects.relatives import Relative
 from tests.generator.pair import recording_pair
@@ -131,6 +133,28 @@ def test_a_curve_is_taken_that_leaves_more_than_noise_where_the_likeliest_name_l
     better = Taken(problem, fit(problem, [*others.effects, ripple]), "coulomb_asymmetry", 0.5 * odds)
     assert problem.plain_error(better.fit.effects) < left
     assert of_its_own_form(problem, alone, better, COUNT) is None
+
+
+def taken_instead(*planted: Planted) -> list[str] | None:
+    """Laws beside a curve that take the place of an asymmetry with the speed and a Stribeck drop; None for none."""
+    problem = problem_of(*planted)
+    nothing = fit(problem, ())
+    now = one_round(scene_of(problem, ()), nothing, {}, {})
+    drop = EFFECTS["stribeck"].of(delta_force=5.0, velocity=0.02)
+    names = fit(problem, [start("viscous_asymmetry"), drop])
+    instead = of_no_name(problem, nothing, Taken(problem, names, "viscous_asymmetry with stribeck", 100.0), now)
+    return None if instead is None else [effect.name for effect in instead[1].effects]
+
+
+@pytest.mark.parametrize("width", [0.02, 0.06])
+def test_a_law_is_asked_beside_its_curve_before_two_that_share_what_it_does(width: float) -> None:
+    """A friction of two directions that takes some speed is near to neither of the two, nor to its own law."""
+    soft = Relative(CoulombAsymmetry(30.0), "soft", {"asymmetry_width": width})
+    assert taken_instead(soft) == ["coulomb_asymmetry"]
+
+
+def test_two_laws_that_leave_noise_stand_beside_no_curve_of_another() -> None:
+    assert taken_instead(ViscousAsymmetry(100.0), Stribeck(12.0, 0.02)) is None
 
 
 def test_laws_at_other_scales_follow_a_longer_tail() -> None:
