@@ -13,7 +13,7 @@ from feeddrive.engine.step.step import driven_step
 from feeddrive.plant.chain.chain import symbolic
 from feeddrive.plant.equations import Forces, effect_forces
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import Symbols, chain_symbols, parameter_symbols, per_structure
+from feeddrive.plant.structure import Symbols, chain_symbols, parameter_symbols, per_structure, without_left_out
 from feeddrive.plant.transmission_law import travel_deviation
 from feeddrive.typing import Expression
 
@@ -61,7 +61,7 @@ def _outputs(plant: Plant, layout: Layout) -> ca.Function:
     The torque is the motor's row of M q'' + C q' + K q = T + f; what rides with the motor on a common hub moves with
     the acceleration that the other rows give it.
     """
-    symbols, given = parameter_symbols(plant), _given(layout)
+    symbols, given = without_left_out(plant, parameter_symbols(plant)), _given(layout)
     chain, p = plant.chain, chain_symbols(plant, symbols)
     acceleration, time = given[3:]
     q, rate, mass, unmoved, found = _unmoved(plant, layout, symbols, given)
