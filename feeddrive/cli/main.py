@@ -28,6 +28,7 @@ from typer.main import get_command
 from feeddrive import __version__
 from feeddrive.blas_threads import one_thread_from_now_on
 from feeddrive.errors import InputError, quoted
+from feeddrive.kept_memory import keep_freed_memory
 
 FINISHED, INTERNAL_ERROR, INPUT_ERROR, INTERRUPTED = 0, 1, 2, 130
 """Exit statuses; the last is the shell's own for Ctrl-C."""
@@ -161,6 +162,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit status: 0 finished, 1 an error of feeddrive itself, 2 unusable input, 130 interrupted.
     """
     one_thread_from_now_on()  # before a command imports numpy
+    keep_freed_memory()
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # letters that a terminal or a pipe cannot take are written as escapes
             stream.reconfigure(errors="backslashreplace")

@@ -40,9 +40,11 @@ def at_rate(series: FloatArray, substeps: int) -> FloatArray:
     """
     if substeps == 1:
         return series
-    taps = firwin(2 * TAPS * substeps + 1, 1 / substeps, window=("kaiser", KAISER))
-    filtered: FloatArray = np.convolve(np.pad(series, TAPS * substeps, mode="edge"), taps, mode="valid")
-    return filtered[::substeps].copy()
+    taps = _taps(TAPS, KAISER, substeps)
+    before, behind = np.full(TAPS * substeps, series[0]), np.full(TAPS * substeps, series[-1])
+    filtered = upfirdn(taps, np.concatenate([before, series, behind]), down=substeps)
+    found: FloatArray = filtered[2 * TAPS : 2 * TAPS + 1 + (len(series) - 1) // substeps].copy()
+    return found
 
 
 def step_count(rows: int, every: int) -> int:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
+from scipy.fft import fft, ifft, next_fast_len
 from scipy.signal import find_peaks
 
-from feeddrive.typing import BoolArray, FloatArray, IntegerArray
+from feeddrive.typing import BoolArray, ComplexArray, FloatArray, IntegerArray
 
 BINS_PER_TURN = 256
 """Angle bins per revolution; the highest order is a quarter of it."""
@@ -78,14 +80,15 @@ def strongest_orders(
     samples = np.bincount(bins, minlength=size)
     mean = np.bincount(bins, weights=residual, minlength=size) / np.maximum(samples, 1)
     weight = np.where(samples > 0, np.hanning(size + 2)[1:-1] if tapered else 1.0, 0.0)
-    tapering = _shares_of_sines(mean, weight / weight.sum())
-    orders = np.arange(len(tapering)) * BINS_PER_TURN / (OVERSAMPLING * size)
-    allowed = (orders > max(lowest, LEAST_PERIODS / turns)) & (orders < min(highest, BINS_PER_TURN / 4))
-    tapering = np.where(allowed, tapering, 0.0)
+    orders = np.arange(OVERSAMPLING * size // 2 + 1) * BINS_PER_TURN / (OVERSAMPLING * size)
+    allowed = np.flatnonzero((orders > max(lowest, LEAST_PERIODS / turns)) & (orders < min(highest, BINS_PER_TURN / 4)))
+    if not len(allowed):
+        return []
+    tapering = _shares_of_sines(mean, weight / weight.sum(), allowed)
     peaks, _ = find_peaks(tapering, distance=OVERSAMPLING)
     best = peaks[np.argsort(tapering[peaks])[::-1][:count]]
     if tapered:
-        share = np.where(allowed, _shares_of_sines(mean, samples / samples.sum()), 0.0)
+        share = _shares_of_sines(mean, samples / samples.sum(), allowed)
         best = _with_fringes(share, best)[:count]
     else:
         share = tapering
@@ -105,18 +108,20 @@ def _with_fringes(share: FloatArray, peaks: IntegerArray) -> IntegerArray:
     return found
 
 
-def _shares_of_sines(values: FloatArray, weight: FloatArray) -> FloatArray:
+def _shares_of_sines(values: FloatArray, weight: FloatArray, allowed: IntegerArray) -> FloatArray:
     """Share of the weighted square about the mean that a sine of each frequency takes, `OVERSAMPLING` times as fine.
 
     Args:
         values: at even places, (n,).
         weight: of each, (n,), one together; 0 where there is no value.
+        allowed: frequencies that are asked for, as they follow one another; the share of others is 0.
     """
     size = OVERSAMPLING * len(values)
     beyond = np.where(weight > 0, values - float(weight @ values), 0.0)
     square = float(weight @ beyond**2)
-    taken, window = np.fft.rfft(weight * beyond, size), np.fft.fft(weight, size)
-    once, twice = window[: len(taken)], window[2 * np.arange(len(taken)) % size]
+    first, last = int(allowed[0]), int(allowed[-1])
+    taken, once = (_lines(one, size, first, last, 1) for one in (weight * beyond, weight))
+    twice = _lines(weight, size, first, last, 2)
     # sums of cos, sin, cos^2, sin^2 and cos sin about their means; transforms are of exp(-i)
     cosine, sine = once.real, -once.imag
     cosines, sines = 0.5 * (1 + twice.real) - cosine**2, 0.5 * (1 - twice.real) - sine**2
@@ -124,7 +129,32 @@ def _shares_of_sines(values: FloatArray, weight: FloatArray) -> FloatArray:
     along = sines * taken.real**2 + cosines * taken.imag**2 + 2 * both * taken.real * taken.imag
     apart = cosines * sines - both**2
     told = apart > TOLD * cosines * sines  # else a mean and one column do as well
-    return np.where(told, along, 0.0) / np.where(told, apart * max(square, np.finfo(float).tiny), 1.0)
+    shares = np.zeros(size // 2 + 1)
+    shares[allowed] = np.where(told, along, 0.0) / np.where(told, apart * max(square, np.finfo(float).tiny), 1.0)
+    return shares
+
+
+def _lines(values: FloatArray, size: int, first: int, last: int, every: int) -> ComplexArray:
+    """Some lines of the transform of values, (n,), that zeros continue to `size`: `every` times `first` to `last`.
+
+    A size with a large prime factor takes long, and an octave of orders is a small part of all. By the chirp transform:
+    2 j k = j^2 + k^2 - (k - j)^2. Source: Rabiner, Schafer and Rader, IEEE Trans. Audio 17 (1969) 86.
+    """
+    count, asked = len(values), last - first + 1
+    room = next_fast_len(count + asked - 1)
+    turned = np.exp(-2j * np.pi / size * (every * first * np.arange(count) % size))
+    chirp, kernel = _chirp(count, asked, size, every)
+    lines: ComplexArray = ifft(fft(values * turned * chirp[:count], room) * kernel)[count - 1 : count - 1 + asked]
+    return lines * chirp[:asked]
+
+
+@lru_cache(maxsize=4)
+def _chirp(count: int, asked: int, size: int, every: int) -> tuple[ComplexArray, ComplexArray]:
+    """exp(-i pi every m^2 / size), and the transform of its inverse about 0, from 1 - `count` to `asked` - 1."""
+    squares = np.arange(max(count, asked)) ** 2 * every % (2 * size)  # of whole numbers: the phase keeps its digits
+    chirp = np.exp(-1j * np.pi / size * squares)
+    about = np.concatenate([chirp[count - 1 : 0 : -1], chirp[:asked]]).conj()
+    return chirp, fft(about, next_fast_len(count + asked - 1))
 
 
 def sine_at(angle: FloatArray, residual: FloatArray, order: float) -> tuple[float, float]:
