@@ -185,7 +185,7 @@ class _Way:
         self.declared = np.array([effect.declared for effect in self.effects], dtype=bool)
         self.turns = [effect.turning_points() for effect in self.effects]
         self.lowest = [effect.least_level(plant.chain.radius) for effect in self.effects]
-        (self.slots, owners), self.values = _slots(plant, port), parameter_values(plant)
+        (self.slots, owners, self.elsewhere), self.values = _slots(plant, port), parameter_values(plant)
         self.owners = np.array(owners, dtype=int)
         factor = math.prod(self._read("level_factor", {})[:, 0])
         self.factors = np.where(self.declared, factor, 1.0)
@@ -281,9 +281,10 @@ class _Way:
 
         `anywhere` is that of one which reads neither.
         """
+        asked = (_POSITIONS, _TIMES) if self.elsewhere[i] else ()
         places = [
             {_SPEEDS: speed, variable: np.full_like(speed, place)}
-            for variable in (_POSITIONS, _TIMES)
+            for variable in asked
             for place in self._within(variable, self.turns[i].get(variable, ()))
         ]
         read = [self._read("viscous", at)[i] for at in places] or [anywhere]
@@ -339,8 +340,9 @@ def top_speed(plant: Plant, undeclared: float) -> float:
 
 
 @per_structure
-def _slots(plant: Plant, port: Port) -> tuple[dict[str, ca.Function], tuple[int, ...]]:
-    """The slots of every effect of a port but its bristle, and the effect of each term of the level.
+def _slots(plant: Plant, port: Port) -> tuple[dict[str, ca.Function], tuple[int, ...], tuple[bool, ...]]:
+    """The slots of every effect of a port but its bristle, the effect of each term of the level, and whether the
+    viscous force of an effect is another one elsewhere, or at another time.
 
     Every slot is a function (position, velocity, time, values) of one row an effect, or one a term of the level.
     """
@@ -361,4 +363,5 @@ def _slots(plant: Plant, port: Port) -> tuple[dict[str, ca.Function], tuple[int,
         slot: ca.Function(f"feeddrive_{slot}", [x, v, t, symbols.vector], [ca.vertcat(*map(ca.SX, row))])
         for slot, row in rows.items()
     }
-    return made, tuple(i for i, several in enumerate(terms) for _ in several)
+    elsewhere = tuple(bool(ca.depends_on(ca.SX(row), ca.vertcat(x, t))) for row in rows["viscous"])
+    return made, tuple(i for i, several in enumerate(terms) for _ in several), elsewhere

@@ -211,9 +211,10 @@ class Sums:
 
     def _take(self, term: Term | None) -> None:
         """Take columns of a term in, or those of the offsets."""
-        length: FloatArray = np.sqrt(np.sum(self._raw(term) ** 2, axis=0))
+        raw = self._raw(term)
+        length: FloatArray = np.sqrt(np.sum(raw**2, axis=0))
         self._scale[term] = np.where(length > 0, length, 1.0)
-        ordered = self._ordered(term)
+        ordered = self._latest.found(None, term, lambda: raw[self._order] / self._scale[term])
         self._moments[term] = np.stack([ordered[fold].T @ self._residual[fold] for fold in self._folds])
         self._products[term, term] = np.stack([ordered[fold].T @ ordered[fold] for fold in self._folds])
 
