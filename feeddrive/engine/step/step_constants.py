@@ -135,8 +135,7 @@ def _energy_norm(linear: Linear, columns: FloatArray) -> FloatArray:
 def _of_cubic(monomials: FloatArray, step: float) -> FloatArray:
     """Response to (value, rate) at both ends of the motor's cubic, shape (n, 4)."""
     # value, rate and acceleration are polynomials in the same four end values
-    basis = [HERMITE_BASIS, _derivative(HERMITE_BASIS) / step, _derivative(_derivative(HERMITE_BASIS)) / step**2]
-    parts = [basis_propagators(monomials[:, :, k : k + 1], basis[k])[:, :, 0] for k in range(3)]
+    parts = [basis_propagators(monomials[:, :, k : k + 1], _MOTION[k] / step**k)[:, :, 0] for k in range(3)]
     response: FloatArray = np.sum(parts, axis=0).T * np.array([1.0, step, 1.0, step])
     return response
 
@@ -146,3 +145,7 @@ def _derivative(basis: FloatArray) -> FloatArray:
     slopes = np.zeros_like(basis)
     slopes[:, :3] = basis[:, 1:] * np.arange(1, 4)
     return slopes
+
+
+_MOTION = (HERMITE_BASIS, _derivative(HERMITE_BASIS), _derivative(_derivative(HERMITE_BASIS)))
+"""Monomial coefficients of the motor's cubic, of its rate and of its acceleration, per step."""
