@@ -94,16 +94,10 @@ def _sample_of(views: Sequence[View], least: float) -> Sample:
         residual,
         np.concatenate(blocks),
         (owner[:, None] == np.arange(len(views))).astype(float),
-        lambda term: _columns_of(views, term),
+        lambda term: np.vstack([columns_in(view, term) for view in views]),
         float(np.average(floors, weights=counts)),
         least,
     )
-
-
-def _columns_of(views: Sequence[View], term: Term) -> FloatArray:
-    """Columns of a term in all recordings, one behind the other, (n, k); those of a single one as they are."""
-    parts = [columns_in(view, term) for view in views]
-    return parts[0] if len(parts) == 1 else np.vstack(parts)
 
 
 def _least(views: Sequence[View]) -> float:
