@@ -64,7 +64,7 @@ def acting_torque(plant: Plant, symbols: Symbols, asked: Expression) -> Expressi
 def acting_torques(plant: Plant, asked: FloatArray) -> FloatArray:
     """Torque that acts [N m] where `asked` [N m] is asked for, shape (n,)."""
     droop, torque = _droop(plant), asked / declared_gain(plant)
-    return np.asarray(_acting(torque, droop)) if droop else torque
+    return np.array(ca.DM(_acting(ca.DM(torque), droop)))[:, 0] if droop else torque
 
 
 def asked_torques(plant: Plant, acting: FloatArray) -> FloatArray:
@@ -89,8 +89,7 @@ def warn_beyond_top(plant: Plant, asked: FloatArray) -> None:
 
 def _acting(asked: Expression, droop: Expression) -> Expression:
     top = 1 / ca.sqrt(3 * droop + _NONE)
-    # of numbers by numpy, many times as fast as by CasADi's own matrices
-    within = np.clip(asked, -top, top) if isinstance(asked, np.ndarray) else ca.fmax(ca.fmin(asked, top), -top)
+    within = ca.fmax(ca.fmin(asked, top), -top)
     return within * (1 - droop * within**2)
 
 

@@ -69,7 +69,7 @@ class AxisPredictor(Predictor[AxisEvidence]):
         """Channel to predicted series in the band, shape (n,), SI."""
         run, motion = self._steps(plant, evidence), evidence.motion
         at_motor = self._turning(plant, motion) + self._motor_sources(plant, motion)
-        torque = _asked(plant, evidence, run.torque_at(motion) + at_motor)
+        torque = self._asked_of(plant, evidence, run.torque_at(motion) + at_motor)
         step = evidence.recording.sample_time
         if evidence.torque_rows is not None:
             if "motor_torque" in evidence.gains:  # what the encoder's steps make beyond the band would fold into it
@@ -81,6 +81,20 @@ class AxisPredictor(Predictor[AxisEvidence]):
         if evidence.scaled_from:
             series["motor_torque"] *= self.scale(plant)
         return {name: lagging(one, lag_of(plant, name), step) for name, one in series.items()}
+
+    def _asked_of(self, plant: Plant, evidence: AxisEvidence, acting: FloatArray) -> FloatArray:
+        """Torque that is asked for, so that a torque [N m], (n,), acts.
+
+        Beyond the band the second difference of an encoder's steps is many times what the motor does, and a torque per
+        ampere that falls would turn it into torque in the band, as a rectifier does. What falls is therefore told of
+        the predicted torque in the band and of the recorded one beyond it.
+        """
+        if evidence.acting is None or evidence.torque_rows is not None or not droops(plant):
+            return asked_torques(plant, acting)
+        drives = effects_key([effect for effect in plant.effects if isinstance(effect, DriveEffect)])
+        recorded = self._asked.found(evidence.motion, drives, partial(acting_torques, plant, evidence.acting))
+        known = recorded + evidence.band.filter(acting - recorded)
+        return asked_torques(plant, known) + declared_gain(plant) * (acting - known)
 
     def _motor_sources(self, plant: Plant, motion: MotorMotion) -> FloatArray:
         """Torque that the sources at the motor ask for [N m], shape (n,)."""
@@ -153,20 +167,6 @@ class AxisPredictor(Predictor[AxisEvidence]):
         beyond = (evidence.measured[name] - geared)[rows]
         about_mean: FloatArray = beyond - beyond.mean()
         return about_mean
-
-
-def _asked(plant: Plant, evidence: AxisEvidence, acting: FloatArray) -> FloatArray:
-    """Torque that is asked for, so that a torque [N m], (n,), acts.
-
-    Beyond the band the second difference of an encoder's steps is many times what the motor does, and a torque per
-    ampere that falls would turn it into torque in the band, as a rectifier does. What falls is therefore told of the
-    predicted torque in the band and of the recorded one beyond it.
-    """
-    if evidence.acting is None or evidence.torque_rows is not None or not droops(plant):
-        return asked_torques(plant, acting)
-    recorded = acting_torques(plant, evidence.acting)
-    known = recorded + evidence.band.filter(acting - recorded)
-    return asked_torques(plant, known) + declared_gain(plant) * (acting - known)
 
 
 def _asked_for(effect: SourceEffect, motion: MotorMotion) -> FloatArray:
