@@ -15,7 +15,6 @@ from feeddrive.errors import InputError, printable
 from feeddrive.interface.axis import load
 from feeddrive.interface.measured.diagnosed import Diagnosed
 from feeddrive.interface.measured.diagnosis_run import Job, Options, continued_job, diagnose_files, first_job
-from feeddrive.interface.measured.explaining import explain
 from feeddrive.interface.measured.reading import read_response_file
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.schema.toml_text import read_toml
@@ -127,6 +126,8 @@ def _explain(plant: str, measured: str, at: str, controller: str | None, out: Pa
     Raises:
         InputError: an input that cannot be used; nothing is written then.
     """
+    from feeddrive.interface.measured.explaining import explain  # late: recordings over time do without
+
     if out is None:
         raise InputError("--out is missing", "", "give a folder for the report, such as --out report")
     refuse_unusable(out)
