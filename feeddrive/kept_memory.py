@@ -14,8 +14,9 @@ _TRIM_THRESHOLD, _MMAP_THRESHOLD, _ARENA_MAX = -1, -3, -8
 KEPT = 1 << 30
 """Bytes at the end of the heap beyond which memory goes back to the system."""
 
-LARGE = 1 << 25
-"""Bytes from which an array has pages of its own, which go back when it is left; the library takes no more."""
+LARGE = 1 << 22
+"""Bytes from which an array has pages of its own, which go back when it is left: few are as large, and kept they would
+stand in each other's way. Tables of which little is used have pages that nobody asks for."""
 
 
 def keep_freed_memory() -> None:

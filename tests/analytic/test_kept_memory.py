@@ -15,7 +15,7 @@ from feeddrive.kept_memory import keep_freed_memory
 if len(sys.argv) > 1:
     keep_freed_memory()
 def filled():
-    return [np.ones(1_000_000) for _ in range(5)]
+    return [np.ones(100_000) for _ in range(5)]
 filled()
 before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
 for _ in range(20):
@@ -31,4 +31,4 @@ def test_pages_are_not_asked_for_again() -> None:
     kept = subprocess.run(
         [sys.executable, "-c", FAULTS, "kept"], capture_output=True, text=True, check=True, timeout=120
     )
-    assert int(kept.stdout) < 1000  # 100 arrays of 2000 pages each
+    assert int(kept.stdout) < 1000  # 100 arrays of 200 pages each
