@@ -142,8 +142,8 @@ def _of_rival_form(problem: Problem, taken: Taken, now: Round) -> tuple[Problem,
             continue
         rest = [one for one in taken.fit.effects if member(one) in members_of(attempt.fit.effects)]
         other = _as_large_as(problem, alike[0], law)
-        there, plain = refitted(problem, fit(problem, [*rest, other], iterations=0))
-        curve, opened = likeliest_curve(there, plain, now.count)
+        rested, plain = refitted(problem, fit(problem, [*rest, other], iterations=0))
+        curve, opened = likeliest_curve(rested, plain, now.count)
         if curve.odds > 0:
             able.append((curve, opened, plain))
     if not able:
