@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.finding.scene import Candidate, Scene
+from feeddrive.diagnosis.finding.scene import Candidate, Scene, scene_of
 from feeddrive.diagnosis.likelihood.coordinates import (
     absent_coordinates,
     at_an_end,
@@ -111,6 +111,21 @@ def started(scene: Scene, candidate: Candidate) -> list[Attempt]:
         except InputError:  # cannot act together with what was found, or cannot be simulated
             continue
     return attempts
+
+
+def begun_beside(problem: Problem, before: Fit, name: str) -> list[list[Effect]]:
+    """Sets of fitted effects and another one that begins at what these leave, one per form, the best first.
+
+    Args:
+        problem: recordings.
+        before: the effects, fitted.
+        name: of the candidate; where there is none, no set.
+    """
+    scene = scene_of(problem, before.effects)
+    candidates = [one for one in problem.predictor.candidates if one.name == name]
+    fits = [attempt.fit for candidate in candidates for attempt in started(scene, candidate)]
+    fits.sort(key=lambda one: one.squared_error)
+    return [[*before.effects, *write_coordinates(one.effects[-1:], problem.plant, one.coordinates)] for one in fits]
 
 
 def _best_start(scene: Scene, candidate: Candidate, starts: Sequence[Effect]) -> Attempt:

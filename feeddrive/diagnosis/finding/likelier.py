@@ -9,17 +9,15 @@ from feeddrive.diagnosis.calibration.calibrate import of_hours
 from feeddrive.diagnosis.finding.attempt import (
     JOINT_ITERATIONS,
     Attempt,
+    begun_beside,
     compared,
     refuse_at_an_end,
     refuse_of_no_hours,
-    started,
 )
 from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_curves, with_curves_of
 from feeddrive.diagnosis.finding.round import Round
-from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
 from feeddrive.diagnosis.finding.spring_law import LAWS, play_from_declared, with_likelier_law
-from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, error_of, fit
 from feeddrive.diagnosis.likelihood.problem import LEVEL, UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between, regained, same_samples
@@ -151,12 +149,7 @@ def _restarted(problem: Problem, kept: Sequence[Effect], first: Attempt, second:
     Empty where the second has no start there.
     """
     before = fit(problem, [*kept, first.fit.effects[-1]], iterations=JOINT_ITERATIONS)
-    (candidate,) = [one for one in problem.predictor.candidates if one.name == second.name]
-    anew = started(scene_of(problem, before.effects), candidate)
-    if not anew:
-        return []
-    best = min(anew, key=lambda attempt: attempt.fit.squared_error).fit
-    return [*before.effects, *write_coordinates(best.effects[-1:], problem.plant, best.coordinates)]
+    return next(iter(begun_beside(problem, before, second.name)), [])
 
 
 def _odds(at_hand: Standing, there: Standing, count: int) -> float:

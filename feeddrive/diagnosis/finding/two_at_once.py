@@ -9,11 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, started
+from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, begun_beside
 from feeddrive.diagnosis.finding.likelier import FITTED, Taken
 from feeddrive.diagnosis.finding.round import FAIR_PART, Round
-from feeddrive.diagnosis.finding.scene import scene_of
-from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between, same_samples
@@ -58,12 +56,10 @@ def two_at_once(
 def _first_anew(taken: Taken, name: str) -> Taken:
     """The set with its first effect started anew beside the second, where less is left: it began at what both leave."""
     rest = [effect for effect in taken.fit.effects if effect.name != name]
-    candidates = [one for one in taken.problem.predictor.candidates if one.name == name]
-    scene = scene_of(taken.problem, fit(taken.problem, rest, iterations=JOINT_ITERATIONS).effects)
+    others = fit(taken.problem, rest, iterations=JOINT_ITERATIONS)
     best = taken
-    for attempt in (start for candidate in candidates for start in started(scene, candidate)):
-        anew = write_coordinates(attempt.fit.effects[-1:], taken.problem.plant, attempt.fit.coordinates)
-        result = fit(taken.problem, [*attempt.fit.effects[:-1], *anew])
+    for start in begun_beside(taken.problem, others, name):
+        result = fit(taken.problem, start)
         if result.squared_error < best.fit.squared_error:
             best = replace(taken, fit=result)
     return best
