@@ -8,12 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.calibration.calibrate import calibrated
+from feeddrive.diagnosis.calibration.calibrate import calibrated, moved
 from feeddrive.diagnosis.calibration.calibration import whitener
 from feeddrive.diagnosis.calibration.together import cost, stepped_together
-from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes
+from feeddrive.diagnosis.calibration.value_slopes import ENOUGH, with_new_slopes
 from feeddrive.diagnosis.finding import search as searching
 from feeddrive.diagnosis.finding.refitting import at_rest
+from feeddrive.diagnosis.finding.round import Round, one_round
+from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.source.torque_ripple import TorqueRipple
@@ -74,6 +76,25 @@ def test_tolerances_are_asked_of_values_at_rest(tmp_path: Path, monkeypatch: pyt
             cost(problem, found.effects, variance) - cost(there.settled(then.effects), then.effects, variance)
             < variance
         )
+
+
+def test_a_search_ends_with_a_round_beside_values_at_rest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is left hides beside values that are on their way: as much as noise here, so that the bound is lowered."""
+    near = calibrated(begun(tmp_path, Truth()))
+    assert near.calibration is not None
+    asked: list[Problem] = []
+
+    def noted(scene: Scene, found: Fit, impossible: dict[str, str], denied: dict[str, str], number: int) -> Round:
+        asked.append(scene.problem)
+        return one_round(scene, found, impossible, denied, number)
+
+    monkeypatch.setattr(searching, "one_round", noted)
+    away = near.at_values(near.calibration.coordinates + 1.5)
+    searching.search(away)
+    assert asked == [away]  # nothing but noise is left
+    monkeypatch.setattr(searching, "UNEXPLAINED", 0.0)
+    end = searching.search(away).problem
+    assert len(asked) == 3 and float(np.max(np.abs(moved(asked[2], end)))) < ENOUGH < 1.0
 
 
 def test_a_step_doubles_no_value(tmp_path: Path) -> None:

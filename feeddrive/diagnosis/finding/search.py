@@ -14,8 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.calibrate import calibrated
+from feeddrive.diagnosis.calibration.calibrate import calibrated, moved
 from feeddrive.diagnosis.calibration.stated import without_effects
+from feeddrive.diagnosis.calibration.value_slopes import ENOUGH
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt
 from feeddrive.diagnosis.finding.bristle_form import of_likelier_bristle
@@ -53,7 +54,7 @@ from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
-from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
+from feeddrive.diagnosis.likelihood.problem import LEVEL, UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import LEVEL_KNOWN, Standing, gain_between, odds_between
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.effects.base import Effect
@@ -147,6 +148,7 @@ def search(
     denied = {**start.denied} if start is not None else {}
     impossible: dict[str, str] = {}
     met: set[tuple[Member, ...]] = set()
+    rested: set[tuple[Member, ...]] = set()
     forms: set[tuple[tuple[Member, ...], tuple[str, ...]] | None] = set()
     near: tuple[Near, ...] = ()
     tried = start.tried if start is not None else 0
@@ -193,12 +195,12 @@ def search(
             denied |= dict.fromkeys((effect.name for effect in others), ANOTHER)
             softer = None if StiffnessDeviation.name in denied else with_softer_spring(problem, found, others)
             problem, found = softer or refitted(problem, fit(problem, _without(found, others)))
-        moved = None if others else at_likelier_place(problem, found, asked.now.count)
-        if moved is not None and members_of(moved[1].effects) not in met:
-            met |= {members_of(found.effects), members_of(moved[1].effects)}
-            problem, found = in_steps_told(*moved)
+        placed = None if others else at_likelier_place(problem, found, asked.now.count)
+        if placed is not None and members_of(placed[1].effects) not in met:
+            met |= {members_of(found.effects), members_of(placed[1].effects)}
+            problem, found = in_steps_told(*placed)
             continue
-        left_out = problem.budget.skips("declared values beyond their tolerances")
+        stood, left_out = problem, problem.budget.skips("declared values beyond their tolerances")
         if not left_out:  # on their way to rest, values pass tolerances that they stay within
             problem, found = at_rest(problem, found)
         back = None if left_out else with_value_back(problem, found)
@@ -222,6 +224,9 @@ def search(
             problem, found, by = beyond
             trials.append(Trial(number, found.effects[-1].name, by.gain, by.standard_error, True))
         elif not others:
+            if members_of(found.effects) not in rested and _hid_on_the_way(stood, problem, found):
+                rested.add(members_of(found.effects))
+                continue
             two = two_at_once(problem, found, asked.now, partial(_asked_beside, {**impossible}, denied, number))
             after = None if two is None else _refitted_with(asked._replace(taken=two), found, denied)
             if after is None or members_of(after[1].effects) in met:
@@ -267,6 +272,17 @@ def _likelier_value(
     ):
         return None
     return far, gain_between(Standing(problem, found), Standing(*far))
+
+
+def _hid_on_the_way(stood: Problem, there: Problem, found: Fit) -> bool:
+    """Whether much is left, and declared values are at rest away from where a set was asked what is near it.
+
+    Values fitted once beside a name still stand in for it, by slopes of where they stood, and rows count by what was
+    left before it: a play of some steps of the scale does not lower the error there, and beside values at rest does.
+    """
+    if there.calibration is None or there.plain_error(found.effects) < UNEXPLAINED:
+        return False
+    return bool(np.max(np.abs(moved(stood, there)), initial=0.0) > ENOUGH)
 
 
 def _refitted_with(asked: _Asked, found: Fit, denied: Container[str]) -> tuple[Problem, Fit] | None:
