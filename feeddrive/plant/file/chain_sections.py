@@ -122,6 +122,9 @@ def _damped(top: Table, chain: Chain, computed: dict[str, Computed]) -> Chain:
         bare = Plant(top.where, replace(chain, values={**chain.values, **dict.fromkeys(_DAMPERS, 0.0)}))
         frequency = float(free_modes(bare, 0.5 * sum(stroke) if stroke else 0.0).frequencies[1])
         at = ", first mode with the motor free" + (" at mid-stroke" if chain.varies else "")
+    if not frequency > 0:  # springs apart by more than sixteen digits
+        mend = "write frequency here, or springs and masses that a machine has"
+        raise InputError("no mode of the chain rings with the motor free", table.place("ratio"), mend)
     time = ratio / (math.pi * frequency)
     values = dict(chain.values)
     origin = f"damping ratio {ratio:g} at {format_quantity(frequency, 'Hz')}{at}"
