@@ -18,6 +18,7 @@ from feeddrive.diagnosis.certainty.profile import profiled
 from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.curve_in_place import with_level_in_curve
+from feeddrive.diagnosis.finding.flank import with_curve_for_flank
 from feeddrive.diagnosis.finding.refitting import refitted, with_value_beyond
 from feeddrive.diagnosis.judging.asked_of_fit import sizes_around_none
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
@@ -104,6 +105,18 @@ def test_a_flank_is_told_as_a_curve_within_the_stroke(tmp_path: Path) -> None:
     (coulomb,) = [one.value for one in found.calibrated if one.key == "table.coulomb"]
     # the two share a level; straight lines between points miss 0.5 N of the curve at most
     assert coulomb * COULOMB + force == pytest.approx(COULOMB + level(points), abs=0.02 * FORCE)
+
+
+def test_a_top_that_was_passed_is_there_wherever_the_stroke_is_declared_from(tmp_path: Path) -> None:
+    """An encoder that counts from the middle of a stroke of 0.3 to 0.6 m: the strokes pass the top at 0.03 m."""
+    path = tmp_path / "rigid.toml"
+    path.write_text(PLANT, encoding="utf-8")
+    run = rigid_run("a", Truth(bump=(PEAK, 0.03, 0.02)))
+    problem, _, _ = prepared(replace(read_plant(path), stroke=(0.3, 0.6)), [run], [], 1.0)
+    found = fit(problem, [FrictionVsPosition.of(peak=PEAK, centre=0.03, half_width=0.02)])
+    assert with_curve_for_flank(problem, found) == (problem, found)
+    beyond = fit(problem, [FrictionVsPosition.of(peak=PEAK, centre=0.2, half_width=0.08)], iterations=0)
+    assert isinstance(with_curve_for_flank(problem, beyond)[1].effects[0].values["position"], tuple)
 
 
 def test_the_level_of_a_curve_is_no_other_friction(tmp_path: Path) -> None:

@@ -122,13 +122,13 @@ def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
 
 
 def _of_rival_form(problem: Problem, taken: Taken, now: Round) -> tuple[Problem, Fit] | None:
-    """A law over the variable of one that was taken, beside its curve, where that is likelier; else None.
+    """A law over the variable of one that is added, beside its curve, where that is likelier; else None.
 
     Not asked where the likeliest set leaves noise.
 
     Far from its own form a law takes less than two others that share what it does: a friction of two directions that
     takes some speed was told as one that grows with it and a Stribeck drop. So the other law is begun as large as the
-    one that was taken, and has declared values and a curve of its own, before the two are held against each other. The
+    one that is added, and has declared values and a curve of its own, before the two are held against each other. The
     likeliest set has the curve of one of its laws as well, where one is likely, and both are over one variance.
     """
     if _is_noise(taken.problem, taken.fit):
@@ -137,10 +137,12 @@ def _of_rival_form(problem: Problem, taken: Taken, now: Round) -> tuple[Problem,
     able: list[tuple[OfNoName, Problem, Fit]] = []
     for attempt in now.attempts:
         law = attempt.fit.effects[-1]
-        alike = [one for one in taken.fit.effects if law.curve_over and one.curve_over == law.curve_over]
+        before = members_of(attempt.fit.effects[:-1])
+        added = [one for one in taken.fit.effects if member(one) not in before]
+        alike = [one for one in added if law.curve_over and one.curve_over == law.curve_over]
         if not alike or member(law) in here or not same_samples(attempt.problem, problem):
             continue
-        rest = [one for one in taken.fit.effects if member(one) in members_of(attempt.fit.effects)]
+        rest = [one for one in taken.fit.effects if member(one) in before]
         other = _as_large_as(problem, alike[0], law)
         rested, plain = refitted(problem, fit(problem, [*rest, other], iterations=0))
         curve, opened = likeliest_curve(rested, plain, now.count)

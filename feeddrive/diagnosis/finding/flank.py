@@ -32,10 +32,11 @@ def with_curve_for_flank(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
         if stroke is None or not isinstance(effect, FrictionVsPosition) or not number(effect.values["peak"]):
             continue
         peak, centre, width = (number(effect.values[key]) for key in ("peak", "centre", "half_width"))
-        if stroke[0] <= centre <= stroke[1]:
-            continue
         runs = scene_of(problem, effects).runs
         met = np.concatenate([run.table_position[e.fit_rows] for run, e in zip(runs, problem.evidence, strict=True)])
+        # an encoder may count from elsewhere than the stroke is declared from: a top that was passed is there
+        if stroke[0] <= centre <= stroke[1] or np.min(met) <= centre <= np.max(met):
+            continue
         points = np.linspace(np.min(met), np.max(met), TABLE_NODES)
         levels = peak * np.exp(-(((points - centre) / width) ** 2))
         effects[place] = FrictionVsPosition.of(position=tuple(points.tolist()), delta_force=tuple(levels.tolist()))
