@@ -30,7 +30,7 @@ from feeddrive.diagnosis.friction_at_port import declared_level
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
-from feeddrive.diagnosis.likelihood.law_curve import has_curve
+from feeddrive.diagnosis.likelihood.law_curve import has_curve, products
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import (
     Standing,
@@ -164,10 +164,10 @@ def _as_large_as(problem: Problem, taken: Effect, law: Effect) -> Effect:
     """A law of a size at which it makes of the recordings as much of what another one does as it can."""
     dot = square = 0.0
     for e in problem.evidence:
-        bare, mine, its = (problem.predictor.predict(problem.machine(some), e) for some in ([], [taken], [law]))
-        for name in e.channels:
-            a, b = ((one[name] - bare[name])[e.counted] / e.unit(name) for one in (mine, its))
-            dot, square = dot + float(a @ b), square + float(b @ b)
+        bare, *both = (problem.predictor.predict(problem.machine(some), e) for some in ([], [taken], [law]))
+        mine, its = ({name: one[name] - bare[name] for name in e.channels} for one in both)
+        more = products(mine, its, e)
+        dot, square = dot + more[0], square + more[1]
     if not square > 0:
         return law
     (other,) = write_coordinates([law], problem.plant, read_coordinates([law], problem.plant) * dot / square)

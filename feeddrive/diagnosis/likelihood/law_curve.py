@@ -106,14 +106,20 @@ def _visited(variable: FloatArray | None, law: Effect) -> FloatArray | None:
 
 def beside(part: dict[str, FloatArray], own: dict[str, FloatArray], e: Evidence) -> dict[str, FloatArray]:
     """A deviation of a law, without what lies along the law itself at the samples that count."""
+    dot, square = products(part, own, e)
+    along = dot / square if square > 0 else 0.0
+    return {name: part[name] - along * own[name] for name in e.channels}
+
+
+def products(part: dict[str, FloatArray], own: dict[str, FloatArray], e: Evidence) -> tuple[float, float]:
+    """What a law makes of the channels times another series, and times itself, over the noise at samples that count."""
     dot = square = 0.0
     for name in e.channels:
         weight = 1 / e.unit(name) ** 2
         law = own[name][e.counted] - (np.mean(own[name][e.counted]) if name in e.floating else 0.0)
         dot += weight * float(part[name][e.counted] @ law)
         square += weight * float(law @ law)
-    along = dot / square if square > 0 else 0.0
-    return {name: part[name] - along * own[name] for name in e.channels}
+    return dot, square
 
 
 def _at_other_scales(
