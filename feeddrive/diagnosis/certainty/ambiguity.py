@@ -40,6 +40,7 @@ from feeddrive.diagnosis.likelihood.set_evidence import (
 from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.stiffness_deviation import PARTS, StiffnessDeviation
+from feeddrive.effects.chain.structural_mode import StructuralMode, resonates_within
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.stiffness_budget import participation
@@ -110,6 +111,7 @@ def rivals_of(found: Search, judged: Sequence[Judged]) -> list[list[Rival]]:
         judged: recordings with the found effects in.
     """
     mine = Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
+    edge = max(e.edge for e in found.problem.evidence)  # a mode beyond it, or without a peak, is a payload
     result: list[list[Rival]] = []
     for place in range(len(found.fit.effects)):
         if found.problem.budget.skips("which other names do as well as", found.fit.effects[place].name):
@@ -124,6 +126,7 @@ def rivals_of(found: Search, judged: Sequence[Judged]) -> list[list[Rival]]:
         good = [rival for rival in tried if rival is not None and rival.as_good and not at_its_limit(rival.effect)]
         taken = found.fit.effects[place].name
         good = [r for r in good if (r.effect.name, taken) not in WITHIN or r.distance > SURE]
+        good = [r for r in good if not isinstance(r.effect, StructuralMode) or resonates_within(r.effect, edge)]
         best: dict[str, Rival] = {}
         for rival in sorted(good, key=lambda rival: rival.odds):
             best.setdefault(rival.effect.name, rival)

@@ -47,7 +47,13 @@ from feeddrive.diagnosis.finding.refitting import (
 )
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
-from feeddrive.diagnosis.finding.simpler_law import as_force, as_payload, less_than_a_period, level_everywhere
+from feeddrive.diagnosis.finding.simpler_law import (
+    as_force,
+    as_payload,
+    less_than_a_period,
+    level_everywhere,
+    without_resonance,
+)
 from feeddrive.diagnosis.finding.spring_law import soft_everywhere
 from feeddrive.diagnosis.finding.two_at_once import two_at_once
 from feeddrive.diagnosis.heat.heat_candidates import is_another
@@ -190,6 +196,7 @@ def search(
             *soft_everywhere(problem, found),
             *level_everywhere(problem, found),
             *less_than_a_period(problem, found),
+            *without_resonance(problem, found),
         ]
         if others:  # the search goes on with the name that the law has run to
             denied |= dict.fromkeys((effect.name for effect in others), ANOTHER)

@@ -112,6 +112,15 @@ def less_than_a_period(problem: Problem, found: Fit) -> list[Effect]:
     return [sine for sine in sines if periods(sine) < 1]
 
 
+def without_resonance(problem: Problem, found: Fit) -> list[Effect]:
+    """Modes of a set that do not resonate in the band, beside a payload: it says as much of the table's mass."""
+    if all(effect.name != Payload.name for effect in found.effects):
+        return []
+    edge = max(e.edge for e in problem.evidence)
+    modes = [effect for effect in found.effects if isinstance(effect, StructuralMode)]
+    return [mode for mode in modes if not resonates_within(mode, edge)]
+
+
 def _apart(found: Fit, name: str) -> tuple[Effect, tuple[Effect, ...]]:
     """The first effect of a name, and the others of a set."""
     place = [effect.name for effect in found.effects].index(name)
