@@ -25,6 +25,7 @@ from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.finding.elsewhere import elsewhere, where
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import odds_of_member
+from feeddrive.diagnosis.finding.simpler_law import highest_seen
 from feeddrive.diagnosis.finding.spring_law import hardly_carrying
 from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
@@ -111,7 +112,7 @@ def rivals_of(found: Search, judged: Sequence[Judged]) -> list[list[Rival]]:
         judged: recordings with the found effects in.
     """
     mine = Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
-    edge = max(e.edge for e in found.problem.evidence)  # a mode beyond it, or without a peak, is a payload
+    edge = highest_seen(found.problem)  # a mode beyond it, or without a peak, is a payload
     result: list[list[Rival]] = []
     for place in range(len(found.fit.effects)):
         if found.problem.budget.skips("which other names do as well as", found.fit.effects[place].name):

@@ -19,6 +19,7 @@ from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, variance_along
+from feeddrive.diagnosis.starts.sines import SKIRT
 from feeddrive.effects.base import Effect, Port, number
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.chain.structural_mode import StructuralMode, resonates_within
@@ -46,7 +47,7 @@ def as_payload(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
     payload = Payload.of(mass=number(mode.values["mass"]))
     there, effects = said_by_effects(problem, (*rest, payload))
     other = refitted(there, fit(there, effects, iterations=JOINT_ITERATIONS))
-    resonates = resonates_within(mode, max(e.edge for e in problem.evidence))
+    resonates = resonates_within(mode, highest_seen(problem))
     told = resonates and odds_between(Standing(*other), Standing(problem, found), count) > TOLD
     return (problem, found) if told else other
 
@@ -116,9 +117,13 @@ def without_resonance(problem: Problem, found: Fit) -> list[Effect]:
     """Modes of a set that do not resonate in the band, beside a payload: it says as much of the table's mass."""
     if all(effect.name != Payload.name for effect in found.effects):
         return []
-    edge = max(e.edge for e in problem.evidence)
     modes = [effect for effect in found.effects if isinstance(effect, StructuralMode)]
-    return [mode for mode in modes if not resonates_within(mode, edge)]
+    return [mode for mode in modes if not resonates_within(mode, highest_seen(problem))]
+
+
+def highest_seen(problem: Problem) -> float:
+    """Frequency up to which a resonance shows [Hz]: at the edge of the band m / (1 - r^2) is twice the mass still."""
+    return SKIRT * max(e.edge for e in problem.evidence)
 
 
 def _apart(found: Fit, name: str) -> tuple[Effect, tuple[Effect, ...]]:

@@ -2,20 +2,22 @@
 
 A drive holds its torque for one cycle, so that a recording with one row a cycle tells all of it. Where rows are further
 apart, a row is the torque of that instant, held for the cycle that begins there (`suspicion.logged.declared_hold`), and
-between two rows the motor may have done anything. Where it was smooth, the fourth difference of its angle is small:
+between two rows the motor may have done anything. Where it was smooth, the sixth difference of its angle is small:
 
-    delta a = |D4 theta| / (12 h^2),    delta T = J delta a,    delta x = s delta a
+    delta a = |D6 theta| / (90 h^2),    delta T = J delta a,    delta x = s delta a
 
 | symbol | meaning | unit |
 |---|---|---|
-| D4 theta | fourth difference of the motor angle over the rows | rad |
+| D6 theta | sixth difference of the motor angle over the rows | rad |
 | h | time between rows | s |
-| delta a | error of the acceleration, that of the second difference | rad/s^2 |
+| delta a | error of the acceleration, no less than that of the quintic spline | rad/s^2 |
 | delta T, delta x | what it misses of the torque, of the table position | N m, m |
 | J | inertia of all that moves, at the motor | kg m^2 |
 | s | how far the table stays behind per acceleration (`feeddrive.plant.analysis.modes`) | m s^2/rad |
 
-Rows at which either is more than the noise of its sensor are left out, unless the encoder's steps make as much of them,
+The spline's second derivative of exp(i u n), at a row, is off by u^6 / 720 for small u and, from the symbol of quintic
+B-splines, by less than (2 sin(u / 2))^6 / 90 up to u = 2.27, 0.72 of half the rate: a ripple that rows show well is no
+unknown motion. Rows at which either is more than the noise of its sensor are left out, unless the encoder's steps make as much of them,
 and those at which the torque jumps from row to row. What the motor did there sets the load ringing against it, and a
 mode faster than half the rate of the rows shows as a slow one: rows are left out until exp(Re(p) t), p its pole with
 the motor held, has brought it below the noise in the band. So are those of faster rows whose drive is declared to have
@@ -46,6 +48,9 @@ CLOCK_OFF = 0.05
 """Share by which times may be off, so that rows of the slowest cycle are still of one: no drive or logger writes rows
 2.0 to 2.1 ms apart by design."""
 
+BOUND = 1 / 90
+"""delta a over the sixth difference and h^-2: above."""
+
 ROUGH = 3.0
 """Rms of fourth differences, as far as the filter reaches, over that of the quietest tenth, beyond which it is no
 noise: five independent ones exceed 2.4 once in 10^5, and the quietest tenth is a fifth below the mean."""
@@ -71,9 +76,10 @@ def known_motion(recording: Recording, plant: Plant, band: Band) -> BoolArray:
         band: of the comparison.
     """
     missed = np.zeros(len(recording))
-    missed[2:-2] = np.abs(np.diff(recording["motor_angle"], 4)) / (12 * recording.sample_time**2)
-    steps = ROUGH * math.sqrt(70 / 12) * quantisation_step(recording["motor_angle"])  # fourth differences of its steps
-    least = max(_least_acceleration(recording, plant), steps / (12 * recording.sample_time**2))
+    missed[3:-3] = BOUND * np.abs(np.diff(recording["motor_angle"], 6)) / recording.sample_time**2
+    # sixth differences of the encoder's steps
+    steps = ROUGH * math.sqrt(924 / 12) * quantisation_step(recording["motor_angle"])
+    least = max(_least_acceleration(recording, plant), BOUND * steps / recording.sample_time**2)
     unknown: BoolArray = missed > least
     unknown |= _ringing(np.where(unknown, missed, 0.0) * _most_shown(recording, plant, band), plant, recording)
     reach = int(np.ceil(band.sample_rate / band.edge))
@@ -83,7 +89,10 @@ def known_motion(recording: Recording, plant: Plant, band: Band) -> BoolArray:
 
 
 def missed_between_rows(recording: Recording, plant: Plant, counted: BoolArray) -> dict[str, float]:
-    """Rms of what the motion between rows, which is not known, makes of each channel: delta T and delta x above.
+    """Rms of what the motion between rows may make of each channel: delta T and delta x above.
+
+    By the fourth difference over 12 h^2, the error of the second one: a channel without noise is a simulation's, whose
+    own steps may differ by that.
 
     Args:
         recording: with a motor angle.
