@@ -6,13 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.interpolate import make_interp_spline
 
 from feeddrive.diagnosis.motion.band import END_CUT, comparison_band
 from feeddrive.diagnosis.motion.preparing import prepare
-from feeddrive.diagnosis.motion.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
+from feeddrive.diagnosis.motion.slow_rows import BOUND, is_slow, known_motion, refuse_unknown_motion, sentence
 from feeddrive.diagnosis.suspicion.logged import declared_hold
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.modes import braked_modes, lag_per_acceleration
+from feeddrive.plant.analysis.modes import braked_modes, inertia_at_motor, lag_per_acceleration
 from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.plant import DeclaredCascade, Plant
 from feeddrive.recording import Recording
@@ -146,3 +147,28 @@ def test_a_channel_without_noise_is_compared_as_far_as_its_rows_tell_the_motion(
     noisy = table + 1e-10 * np.random.default_rng(3).standard_normal(len(table))
     measured = replace(exact, channels={"motor_angle": angle, "table_position": noisy})
     assert prepare(measured, PLANT, 1.0).noise["table_position"] < 1e-10 < found
+
+
+@pytest.mark.parametrize("share", [0.05, 0.2, 0.4, 0.6, 0.7])
+def test_the_bound_of_the_acceleration_holds_for_the_spline(share: float) -> None:
+    """Of a sine at a share of half the rate: what the spline misses of the acceleration, and the bound on it."""
+    rows = np.arange(400)
+    sine = np.sin(np.pi * share * rows + 0.3)
+    spline = make_interp_spline(rows, sine, k=5)
+    inner = slice(100, 300)  # the spline's ends are told there by a thousandth of nothing
+    missed = np.max(np.abs(spline(rows, 2) + (np.pi * share) ** 2 * sine)[inner])
+    bound = BOUND * np.max(np.abs(np.diff(sine, 6))[97:297])
+    assert missed < bound
+    assert missed > 0.1 * bound  # 8 times less at low frequencies, by their series 90 / 720
+
+
+def test_a_ripple_that_the_rows_show_well_is_no_unknown_motion() -> None:
+    """At 0.2 of half the rate, a hundred times the noise of the torque: the spline misses a seventh of the noise."""
+    time = STEP * np.arange(3000)
+    w, ripple = 2 * np.pi * 10.0, 4.0
+    angle = 3.0 * time + ripple / (inertia_at_motor(PLANT) * w**2) * np.sin(w * time)
+    # noise alone looks like a jump of the torque at a row of a thousand, of which the filter reaches twenty
+    assert known(recording(angle, np.full(len(time), 1.0)))[20:-20].mean() > 0.97
+    faster = 2 * np.pi * 45.0  # 0.9 of half the rate
+    angle = 3.0 * time + 2 * ripple / (inertia_at_motor(PLANT) * faster**2) * np.sin(faster * time)
+    assert not known(recording(angle, np.full(len(time), 1.0)))[20:-20].any()

@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.finding.scene import scene_of
-from feeddrive.diagnosis.finding.simpler_law import less_than_a_period, level_everywhere
+from feeddrive.diagnosis.finding.simpler_law import less_than_a_period, level_everywhere, without_resonance
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.prediction import AxisPredictor
 from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.effects.base import Effect, Port
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.chain.structural_mode import LEAST_PEAK, StructuralMode
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.friction.stribeck import Stribeck
 from feeddrive.effects.source.ball_pass_ripple import BallPassRipple
@@ -55,3 +57,24 @@ def test_a_sine_of_less_than_a_period_is_none(periods: float, is_none: bool, por
     sine = law.of(port, amplitude=0.01, order=periods * lead / travel, phase=0.3)
     found = fit(problem, (sine,), iterations=0)
     assert less_than_a_period(problem, found) == ([sine] if is_none else [])
+
+
+@pytest.mark.parametrize(
+    ("frequency", "damping", "shows"),
+    [(0.8, 0.05, True), (1.3, 0.05, True), (1.5, 0.05, False), (0.8, 0.7, True), (0.8, 0.72, False)],
+)
+def test_a_mode_that_does_not_resonate_is_none_beside_a_payload(frequency: float, damping: float, shows: bool) -> None:
+    plant = axis_plant("bench")
+    problem = Problem(plant, (prepare(pair("bench", "null")[0], plant, 1.0),), AxisPredictor())
+    hertz = frequency * problem.evidence[0].edge
+    mode = StructuralMode.of(mass=5.0, frequency=hertz, damping=damping)
+    found = fit(problem, (Payload.of(mass=10.0), mode), iterations=0)
+    assert without_resonance(problem, found) == ([] if shows else [mode])
+    assert without_resonance(problem, fit(problem, (mode,), iterations=0)) == []  # `as_payload` asks for it there
+
+
+def test_a_mode_without_a_peak_has_none_in_its_deflection() -> None:
+    ratio = np.linspace(1e-3, 3.0, 3000)
+    for damping, has_peak in ((LEAST_PEAK - 0.02, True), (LEAST_PEAK + 0.02, False)):
+        deflection = np.abs(1 / (1 - ratio**2 + 2j * damping * ratio))
+        assert bool(np.max(deflection) > deflection[0] * (1 + 1e-6)) is has_peak

@@ -18,6 +18,7 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated, moved
 from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.calibration.value_slopes import ENOUGH
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
+from feeddrive.diagnosis.finding.along_the_stroke import with_declared_stiffness
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt
 from feeddrive.diagnosis.finding.bristle_form import of_likelier_bristle
 from feeddrive.diagnosis.finding.curve_in_place import (
@@ -210,6 +211,8 @@ def search(
         stood, left_out = problem, problem.budget.skips("declared values beyond their tolerances")
         if not left_out:  # on their way to rest, values pass tolerances that they stay within
             problem, found = at_rest(problem, found)
+            stiff = with_declared_stiffness(Standing(problem, found), asked.now.count)
+            problem, found = (problem, found) if stiff is None else (stiff.problem, stiff.fit)
         back = None if left_out else with_value_back(problem, found)
         if back is not None:
             problem, found = back

@@ -17,11 +17,11 @@ between two rows the motor may have done anything. Where it was smooth, the sixt
 
 The spline's second derivative of exp(i u n), at a row, is off by u^6 / 720 for small u and, from the symbol of quintic
 B-splines, by less than (2 sin(u / 2))^6 / 90 up to u = 2.27, 0.72 of half the rate: a ripple that rows show well is no
-unknown motion. Rows at which either is more than the noise of its sensor are left out, unless the encoder's steps make as much of them,
-and those at which the torque jumps from row to row. What the motor did there sets the load ringing against it, and a
-mode faster than half the rate of the rows shows as a slow one: rows are left out until exp(Re(p) t), p its pole with
-the motor held, has brought it below the noise in the band. So are those of faster rows whose drive is declared to have
-several cycles in each.
+unknown motion. Rows at which either is more than the noise of its sensor are left out, unless the encoder's steps make
+as much of them, and those at which the torque jumps from row to row. What the motor did there sets the load ringing
+against it, and a mode faster than half the rate of the rows shows as a slow one: rows are left out until exp(Re(p) t),
+p its pole with the motor held, has brought it below the noise in the band. So are those of faster rows whose drive is
+declared to have several cycles in each.
 Valid where what the drive does between rows shows at the rows; a vibration at a multiple of their rate
 does not.
 """

@@ -47,7 +47,7 @@ class StructuralMode(ChainEffect):
 
 
 LEAST_PEAK = math.sqrt(0.5)
-"""Damping ratio from which |1 / (1 - r^2 + 2 i zeta r)|, r the frequency over f, falls from r = 0 on: no peak is left."""
+"""Damping ratio from which |1 / (1 - r^2 + 2 i zeta r)|, r the frequency over f, falls from r = 0 on."""
 
 
 def resonates_within(mode: Effect, edge: float) -> bool:
