@@ -172,3 +172,18 @@ def test_a_ripple_that_the_rows_show_well_is_no_unknown_motion() -> None:
     faster = 2 * np.pi * 45.0  # 0.9 of half the rate
     angle = 3.0 * time + 2 * ripple / (inertia_at_motor(PLANT) * faster**2) * np.sin(faster * time)
     assert not known(recording(angle, np.full(len(time), 1.0)))[20:-20].any()
+
+
+def test_rows_left_out_between_a_drives_cycles_are_told() -> None:
+    """Rows of 1 ms of a drive of four cycles in each: it jerks once, and the remark says what that costs."""
+    step, time = 1e-3, np.arange(8000) * 1e-3
+    random = np.random.default_rng(5)
+    angle = np.where(time < 4.0, 30.0 * time, 120.0 - 30.0 * (time - 4.0)) + 1e-6 * np.round(random.normal(size=8000))
+    channels = {"motor_angle": angle, "motor_torque": np.where(time < 4.0, 1.0, -1.0) + random.normal(0, 0.04, 8000)}
+    made = Recording("fast", time, channels, step)
+    remarks = prepare(made, PLANT, 1.0, hold=step / 4).recording.notes
+    (said,) = (one for one in remarks if "cycles in each" in one)
+    assert "of the rows are left out: the drive has several cycles in each of 1 ms" in said
+    share = float(said.split(" %")[0].split()[-1])
+    assert 0.1 < share < 50
+    assert not any("cycles in each" in one for one in prepare(made, PLANT, 1.0).recording.notes)

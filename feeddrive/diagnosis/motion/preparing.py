@@ -21,6 +21,7 @@ from feeddrive.diagnosis.motion.slow_rows import (
     missed_between_rows,
     refuse_unknown_motion,
     sentence,
+    sentence_of_cycles,
 )
 from feeddrive.diagnosis.suspicion.channel_timing import lagging
 from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
@@ -130,7 +131,11 @@ def _counted(
         recording = replace(recording, notes=(*recording.notes, sentence(known, recording)))
         counted &= known
     elif hold is not None:  # the loop is faster than the rows: what it does between them is not known either
-        counted &= known_motion(recording, plant, band)
+        known = known_motion(recording, plant, band)
+        refuse_unknown_motion(known, counted, recording)
+        if not known.all():
+            recording = replace(recording, notes=(*recording.notes, sentence_of_cycles(known, recording)))
+        counted &= known
     else:
         folded = folded_rows(recording, plant, band)
         if folded.any():

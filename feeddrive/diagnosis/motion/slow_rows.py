@@ -171,15 +171,28 @@ def refuse_unknown_motion(known: BoolArray, counted: BoolArray, recording: Recor
     left = int(np.sum(known & counted))
     if left < FEWEST_ROWS:
         what = f"the motion between rows {recording.sample_time * 1e3:.3g} ms apart is known at {left} of them"
-        mend = f"record at {1 / SLOWEST_CYCLE:.0f} Hz or more, or a motion of long strokes at constant speed"
+        faster = f"at {1 / SLOWEST_CYCLE:.0f} Hz or more" if is_slow(recording) else "every cycle of the drive"
+        mend = f"record {faster}, or a motion of long strokes at constant speed"
         raise InputError(what, recording.name, mend)
 
 
 def sentence(known: BoolArray, recording: Recording) -> str:
     """Remarks on a slow recording."""
-    lost = 100 * (1 - float(np.mean(known)))
     return (
         f"rows are {recording.sample_time * 1e3:.3g} ms apart, further than a drive's cycles: a torque is that of its "
-        f"row's instant, {lost:.0f} % of the rows are left out because the motion between them is not known, and "
+        f"row's instant, {_lost(known)} % of the rows are left out because the motion between them is not known, and "
         f"nothing faster than {0.1 / recording.sample_time:.3g} Hz is seen"
     )
+
+
+def sentence_of_cycles(known: BoolArray, recording: Recording) -> str:
+    """Remark on a recording whose drive has several cycles in a row."""
+    return (
+        f"{_lost(known)} % of the rows are left out: the drive has several cycles in each of "
+        f"{recording.sample_time * 1e3:.3g} ms, and what the motor did between them is not known; record every cycle"
+    )
+
+
+def _lost(known: BoolArray) -> str:
+    """Rows that are left out, in per cent."""
+    return f"{100 * (1 - float(np.mean(known))):.2g}"
