@@ -2,26 +2,31 @@
 
 A drive holds its torque for one cycle, so that a recording with one row a cycle tells all of it. Where rows are further
 apart, a row is the torque of that instant, held for the cycle that begins there (`suspicion.logged.declared_hold`), and
-between two rows the motor may have done anything. Where it was smooth, the sixth difference of its angle is small:
+between two rows the motor may have done anything. Where it was smooth, differences of its angle are small:
 
-    delta a = |D6 theta| / (90 h^2),    delta T = J delta a,    delta x = s delta a
+    delta a = |D4 theta| / (12 h^2) or |D6 theta| / (30 h^2),    delta T = J delta a,    delta x = s delta a
 
 | symbol | meaning | unit |
 |---|---|---|
-| D6 theta | sixth difference of the motor angle over the rows | rad |
+| D4, D6 | fourth difference of rows slower than any cycle, sixth of faster ones | 1 |
+| theta | motor angle at the rows | rad |
 | h | time between rows | s |
-| delta a | error of the acceleration, no less than that of the quintic spline | rad/s^2 |
+| delta a | error of the acceleration | rad/s^2 |
 | delta T, delta x | what it misses of the torque, of the table position | N m, m |
 | J | inertia of all that moves, at the motor | kg m^2 |
 | s | how far the table stays behind per acceleration (`feeddrive.plant.analysis.modes`) | m s^2/rad |
 
-The spline's second derivative of exp(i u n), at a row, is off by u^6 / 720 for small u and, from the symbol of quintic
-B-splines, by less than (2 sin(u / 2))^6 / 90 up to u = 2.27, 0.72 of half the rate: a ripple that rows show well is no
-unknown motion. Rows at which either is more than the noise of its sensor are left out, unless the encoder's steps make
-as much of them, and those at which the torque jumps from row to row. What the motor did there sets the load ringing
-against it, and a mode faster than half the rate of the rows shows as a slow one: rows are left out until exp(Re(p) t),
-p its pole with the motor held, has brought it below the noise in the band. So are those of faster rows whose drive is
-declared to have several cycles in each.
+The fourth difference tells the error of the second one; a ripple of 80 Hz at rows of 2 ms misses 34 times less by the
+quintic spline. The spline's second derivative of exp(i u n), at a row, is off by u^6 / 720 for small u and, from the
+symbol of quintic B-splines, by less than (2 sin(u / 2))^6 / 90 up to u = 2.27, 0.72 of half the rate. A jump of the
+acceleration leaves 1 / 30 of its sixth difference in the band, on the mean over where in a row it is: that is the
+greater. Rows slower than any cycle keep the older bound: with a free play of some steps of the encoder what the drive
+does between them is much more than its spline misses.
+Rows at which either is more than the noise of its sensor are left out, unless the encoder's steps make as much of them,
+and those at which the torque jumps from row to row. What the motor did there sets the load ringing against it, and a
+mode faster than half the rate of the rows shows as a slow one: rows are left out until exp(Re(p) t), p its pole with
+the motor held, has brought it below the noise in the band. So are those of faster rows whose drive is declared to have
+several cycles in each.
 Valid where what the drive does between rows shows at the rows; a vibration at a multiple of their rate
 does not.
 """
@@ -48,8 +53,8 @@ CLOCK_OFF = 0.05
 """Share by which times may be off, so that rows of the slowest cycle are still of one: no drive or logger writes rows
 2.0 to 2.1 ms apart by design."""
 
-BOUND = 1 / 90
-"""delta a over the sixth difference and h^-2: above."""
+BOUND = {4: 1 / 12, 6: 1 / 30}
+"""delta a over a difference of the order and h^-2: above."""
 
 ROUGH = 3.0
 """Rms of fourth differences, as far as the filter reaches, over that of the quietest tenth, beyond which it is no
@@ -76,10 +81,12 @@ def known_motion(recording: Recording, plant: Plant, band: Band) -> BoolArray:
         band: of the comparison.
     """
     missed = np.zeros(len(recording))
-    missed[3:-3] = BOUND * np.abs(np.diff(recording["motor_angle"], 6)) / recording.sample_time**2
-    # sixth differences of the encoder's steps
-    steps = ROUGH * math.sqrt(924 / 12) * quantisation_step(recording["motor_angle"])
-    least = max(_least_acceleration(recording, plant), BOUND * steps / recording.sample_time**2)
+    order = 4 if is_slow(recording) else 6
+    bound, ends = BOUND[order] / recording.sample_time**2, order // 2
+    missed[ends:-ends] = bound * np.abs(np.diff(recording["motor_angle"], order))
+    # differences of the encoder's steps: of white noise the power of the binomials
+    steps = ROUGH * math.sqrt(math.comb(2 * order, order) / 12) * quantisation_step(recording["motor_angle"])
+    least = max(_least_acceleration(recording, plant), bound * steps)
     unknown: BoolArray = missed > least
     unknown |= _ringing(np.where(unknown, missed, 0.0) * _most_shown(recording, plant, band), plant, recording)
     reach = int(np.ceil(band.sample_rate / band.edge))
@@ -100,7 +107,7 @@ def missed_between_rows(recording: Recording, plant: Plant, counted: BoolArray) 
         counted: rows that are compared, (n,).
     """
     fourth = np.diff(recording["motor_angle"], 4)[counted[2:-2]]
-    missed = float(np.sqrt(np.mean(fourth**2))) / (12 * recording.sample_time**2)
+    missed = BOUND[4] * float(np.sqrt(np.mean(fourth**2))) / recording.sample_time**2
     made = {"motor_torque": inertia_at_motor(plant) * missed}
     if plant.chain.elastic:
         made["table_position"] = lag_per_acceleration(plant) * missed
