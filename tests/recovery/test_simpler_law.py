@@ -13,7 +13,7 @@ from feeddrive.diagnosis.motion.prediction import AxisPredictor
 from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.chain.payload import Payload
-from feeddrive.effects.chain.structural_mode import LEAST_PEAK, StructuralMode
+from feeddrive.effects.chain.structural_mode import NO_PEAK, StructuralMode
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.friction.stribeck import Stribeck
 from feeddrive.effects.source.ball_pass_ripple import BallPassRipple
@@ -75,6 +75,6 @@ def test_a_mode_that_does_not_resonate_is_none_beside_a_payload(frequency: float
 
 def test_a_mode_without_a_peak_has_none_in_its_deflection() -> None:
     ratio = np.linspace(1e-3, 3.0, 3000)
-    for damping, has_peak in ((LEAST_PEAK - 0.02, True), (LEAST_PEAK + 0.02, False)):
+    for damping, has_peak in ((NO_PEAK - 0.02, True), (NO_PEAK + 0.02, False)):
         deflection = np.abs(1 / (1 - ratio**2 + 2j * damping * ratio))
         assert bool(np.max(deflection) > deflection[0] * (1 + 1e-6)) is has_peak

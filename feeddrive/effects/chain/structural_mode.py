@@ -46,10 +46,10 @@ class StructuralMode(ChainEffect):
         return {**chain, **{f"{self.label}.{key}": p[key] for key in ("mass", "frequency", "damping")}}
 
 
-LEAST_PEAK = math.sqrt(0.5)
+NO_PEAK = math.sqrt(0.5)
 """Damping ratio from which |1 / (1 - r^2 + 2 i zeta r)|, r the frequency over f, falls from r = 0 on."""
 
 
 def resonates_within(mode: Effect, edge: float) -> bool:
     """Whether a mode resonates below a frequency [Hz]; braked so that it has no peak it is a payload that lags."""
-    return number(mode.values["frequency"]) < edge and number(mode.values["damping"]) < LEAST_PEAK
+    return number(mode.values["frequency"]) < edge and number(mode.values["damping"]) < NO_PEAK
