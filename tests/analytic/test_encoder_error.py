@@ -143,3 +143,23 @@ def test_torque_of_unknown_scale_is_weighed_as_the_torque_itself() -> None:
     assert unit * shared.known_to("motor_torque") == pytest.approx(known.known_to("motor_torque"), rel=0.01)
     for name, gains in known.gains.items():
         np.testing.assert_allclose(shared.gains[name], gains, atol=0.01)
+
+
+@pytest.mark.parametrize("below", [0.05, -0.05, 0.1])
+def test_angle_that_a_drive_holds_at_an_edge_of_two_steps_is_at_the_edge(below: float) -> None:
+    """Held within a tenth of a step, and trembling by as much from row to row; then a rest inside a step, and strokes.
+
+    The mean of what is measured is off by the share of rows beyond the edge; the edge is off by `below`.
+    """
+    held, strokes = TIME < 4.0, TIME > 8.0
+    trembling = 0.1 * STEP * np.random.default_rng(5).normal(size=len(TIME))
+    path = 40 * (1 - np.cos(2 * np.pi * 0.4 * (TIME - 8.0))) * strokes
+    true = np.where(held, (0.5 - below) * STEP + trembling, 0.3 * STEP) + path
+    measured = np.round(true / STEP) * STEP
+    expected = expected_motion(measured, STEP, 1 / RATE).angle
+    missed = float(np.mean((expected - true)[(TIME > 0.2) & (TIME < 3.8)])) / STEP
+    mean = float(np.mean((measured - true)[(TIME > 0.2) & (TIME < 3.8)])) / STEP
+    # the edge lies within 0.1; three samples in four on one side of it leave their mean twice as far off and more
+    assert abs(missed) < abs(below) + 0.02 < 0.6 * abs(mean)
+    inside = (TIME > 4.5) & (TIME < 7.5)
+    assert np.max(np.abs(expected - measured)[inside]) < 0.02 * STEP

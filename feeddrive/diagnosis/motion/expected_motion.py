@@ -17,6 +17,11 @@ Window by window and frequency by frequency (Wiener, Extrapolation, Interpolatio
 P is of one frequency, as the spectrum of a stroke falls fifty times from one to the next, and what is taken away is
 then N in the mean however steep it is (Stein, Ann. Statist. 9 (1981) 1135).
 
+An angle that goes to and fro between two steps and meets no third, as that of an axis does which a drive holds, is at
+the edge between them, wherever its mean is and however large its steps are: no sample lies farther than half a step
+from the motion, and what is no larger than a few tenths of one shows as a whole one (consistent reconstruction: Thao
+and Vetterli, IEEE Trans. Signal Process. 42 (1994) 519).
+
 What is expected has less power than the true motion: what is too small to be told in a window is not in it, and an
 encoder that measured it would lose no more. A likely motion has what may have been lost besides, drawn at random, so
 that it has the power of the true one.
@@ -25,7 +30,7 @@ that it has the power of the true one.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import uniform_filter
@@ -47,6 +52,9 @@ EVEN = math.log(1000)
 """Square of the mean phasor between rows, over that of phases at random, from which steps make lines: that square is
 exponential, and one window in a thousand reaches so much by chance. An angle that passes many steps a row, unevenly,
 makes white ones (Widrow & Kollár, Quantization Noise (2008)), in which peaks of a draw are of that draw alone."""
+
+TO_AND_FRO = 2
+"""Changes of the angle in each half of a window from which it goes to and fro: a motion that passes changes it once."""
 
 SURE_MOTION = 8.0
 """Frequency [Hz] below which the angle is motion: an axis moves many steps within a window."""
@@ -111,7 +119,22 @@ def expected_motion(angle: FloatArray, step: float, sample_time: float) -> Expec
     made = np.mean([np.abs(spectra_of(_steps_of(first, step, draw), window)) ** 2 for draw in range(DRAWS)], axis=0)
     made = uniform_filter(made, (ALONG_TIME, 1))
     lines = (made > SHOWN * white) & _keeps_step(first / step, window**2)[:, None]
-    return given(np.where(lines, made, white))
+    found = given(np.where(lines, made, white))
+    return replace(found, angle=_at_edges(angle, found.angle, step, window))
+
+
+def _at_edges(angle: FloatArray, expected: FloatArray, step: float, window: FloatArray) -> FloatArray:
+    """An expected motion, (n,), with the edge in its place where the angle goes to and fro between two steps."""
+    length = len(window)
+    frames = frames_of(angle, length)
+    least, most = np.min(frames, axis=1), np.max(frames, axis=1)
+    changes = np.abs(np.diff(frames, axis=1)) > 0.5 * step
+    first, last = (np.sum(half, axis=1) for half in np.array_split(changes, 2, axis=1))
+    inside = np.all(frames_of(np.ones(len(angle)), length) > 0, axis=1)
+    held = inside & (most - least < 1.5 * step) & (np.minimum(first, last) >= TO_AND_FRO)
+    edge = np.where(held, 0.5 * (least + most), 0.0)[:, None]
+    beyond = np.where(held[:, None], edge - frames_of(expected, length), 0.0)
+    return expected + _overlapped(beyond * window**2, len(angle))
 
 
 def _hidden(over_noise: FloatArray, moving: BoolArray) -> FloatArray:
@@ -161,9 +184,13 @@ def frames_of(series: FloatArray, length: int) -> FloatArray:
 
 def added(spectra: ComplexArray, window: FloatArray, count: int) -> FloatArray:
     """The series of so many samples that overlapping windows with these spectra add up to."""
-    length = len(window)
+    return _overlapped(np.fft.irfft(spectra, len(window), axis=1) * window, count)
+
+
+def _overlapped(parts: FloatArray, count: int) -> FloatArray:
+    """The series of so many samples that windows which overlap by half, (windows, length), add up to."""
+    length = parts.shape[1]
     half = length // 2
-    parts = np.fft.irfft(spectra, length, axis=1) * window
     total = np.zeros((len(parts) + 1) * half)
     for i, part in enumerate(parts):
         total[i * half : i * half + length] += part
