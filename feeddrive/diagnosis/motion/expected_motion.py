@@ -56,6 +56,10 @@ makes white ones (Widrow & Kollár, Quantization Noise (2008)), in which peaks o
 TO_AND_FRO = 2
 """Changes of the angle in each half of a window from which it goes to and fro: a motion that passes changes it once."""
 
+PARTS = 1, 2, 4
+"""Parts of a window in which the angle is asked whether it goes to and fro: a rest ends within one, not with it. The
+longest leave the fewest rows that a slow motion's passage through an edge would take for a rest."""
+
 SURE_MOTION = 8.0
 """Frequency [Hz] below which the angle is motion: an axis moves many steps within a window."""
 
@@ -120,7 +124,10 @@ def expected_motion(angle: FloatArray, step: float, sample_time: float) -> Expec
     made = uniform_filter(made, (ALONG_TIME, 1))
     lines = (made > SHOWN * white) & _keeps_step(first / step, window**2)[:, None]
     found = given(np.where(lines, made, white))
-    return replace(found, angle=_at_edges(angle, found.angle, step, window))
+    held = found.angle
+    for part in PARTS:
+        held = _at_edges(angle, held, step, window_of(sample_time, part))
+    return replace(found, angle=held)
 
 
 def _at_edges(angle: FloatArray, expected: FloatArray, step: float, window: FloatArray) -> FloatArray:
@@ -150,9 +157,9 @@ def _hidden(over_noise: FloatArray, moving: BoolArray) -> FloatArray:
     return np.where(still, np.maximum(mean - 1, 0.0), 0.0)
 
 
-def window_of(sample_time: float) -> FloatArray:
-    """Window of the spectra: squares of windows that overlap by half add up to one, (m,)."""
-    return np.asarray(np.sqrt(hann(2 * round(0.5 * WINDOW / sample_time), sym=False)))
+def window_of(sample_time: float, part: int = 1) -> FloatArray:
+    """Window of the spectra, or a part of it: squares of windows that overlap by half add up to one, (m,)."""
+    return np.asarray(np.sqrt(hann(2 * round(0.5 * WINDOW / part / sample_time), sym=False)))
 
 
 def _keeps_step(places: FloatArray, weights: FloatArray) -> BoolArray:
