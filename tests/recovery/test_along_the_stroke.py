@@ -54,3 +54,24 @@ def test_a_stiffness_that_stood_in_for_the_law_goes_back(tmp_path: Path) -> None
     assert number(law.values["share_over_stroke"]) == pytest.approx(0.683, abs=0.1)
     torque = next(channel for channel in result.channels if channel.name == "motor_torque")
     assert torque.after.rms < 0.06 * torque.before.rms  # 0.11 beside the stiffness that stood in
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("seed", "names", "left"),
+    [
+        # a load that hangs on a spring that gives way with the square of the place: a lead error took as much alone
+        (10003, {"stiffness_vs_position"}, 0.9),
+        # the same law beside a late scale: a parabola that begins at none had the slope the wrong way round
+        (10023, {"stiffness_vs_position", "channel_delay"}, 0.05),
+    ],
+)
+def test_a_stiffness_along_the_stroke_is_found_where_the_declared_one_bends(
+    seed: int, names: set[str], left: float, tmp_path: Path
+) -> None:
+    drawn = case(seed)
+    plant, fit, judge = drawn.write(tmp_path)
+    result, found = diagnose(read_plant(plant), [read_recording(fit)], [read_recording(judge)])
+    assert {law.name for law in found} == names
+    torque = next(channel for channel in result.channels if channel.name == "motor_torque")
+    assert torque.after.rms < left * torque.before.rms  # 1.02 and 0.30 without it

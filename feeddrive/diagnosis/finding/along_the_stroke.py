@@ -10,7 +10,7 @@ line and as a parabola, and both are fitted to their ends.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
+from feeddrive.diagnosis.starts.transmission_starts import PARABOLA
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.errors import InputError
@@ -29,12 +30,15 @@ from feeddrive.typing import FloatArray
 AXIAL = ("axial_stiffness", "nut_stiffness")
 """Declared values that are k of the law, in chains of lumps and of a distributed screw."""
 
+LINE = {"share_over_stroke": 0.0, "middle_compliance": 0.0}
+"""Values of the law that a straight line begins with."""
+
 
 def with_declared_stiffness(here: Standing, count: int) -> Standing | None:
     """A likelier set with the declared stiffness near what is declared; None where it is, or none is likelier.
 
     Args:
-        here: a set, its values at rest.
+        here: a set.
         count: candidates and starts that were tried.
     """
     problem, found, known = here.problem, here.fit, here.problem.calibration
@@ -48,21 +52,58 @@ def with_declared_stiffness(here: Standing, count: int) -> Standing | None:
     softer = 1 / value.factor(float(known.coordinates[far[0]]))
     coordinates = known.coordinates.copy()
     coordinates[far[0]] = 0.0
-    best: tuple[float, Standing] | None = None
-    for law in _as_compliant(found.effects[place], softer, _visited(problem, found.effects)):
-        effects = (*found.effects[:place], law, *found.effects[place + 1 :])
-        try:
-            there = with_slopes(problem.at_values(coordinates), effects)
-            other = Standing(*at_rest(*refitted(there, fit(there, effects))))
-            odds = odds_between(here, other, count)
-        except InputError:  # a machine on the way cannot be simulated
-            continue
-        if odds > 0 and (best is None or odds > best[0]):
+    other = problem.at_values(coordinates)
+    laws = _as_compliant(found.effects[place], softer, _visited(problem, found.effects))
+    begun = [_begun(other, found.effects, place, law) for law in laws]
+    return _likeliest(here, begun, count)
+
+
+def with_parabola_from_line(here: Standing, count: int) -> Standing | None:
+    """A likelier set whose parabola begins at the straight line that does best; None where it has none, or is likelier.
+
+    Over some of the stroke a parabola has the level of the compliance right with any slope, and fits that begin at none
+    of either end there. A line has the slope that it needs.
+
+    Args:
+        here: a set.
+        count: candidates and starts that were tried.
+    """
+    problem, found = here.problem, here.fit
+    places = [i for i, e in enumerate(found.effects) if isinstance(e, StiffnessVsPosition) and _is_parabola(e)]
+    if not places or problem.budget.skips("a stiffness along the stroke, begun as a straight line"):
+        return None
+    (place,) = places
+    line = _begun(problem, found.effects, place, found.effects[place].with_values(**LINE))
+    if line is None:
+        return None
+    parabola = line.fit.effects[place].with_values(middle_compliance=PARABOLA)
+    return _likeliest(here, [line, _begun(line.problem, line.fit.effects, place, parabola)], count)
+
+
+def _is_parabola(law: Effect) -> bool:
+    return number(law.values["middle_compliance"]) != 0
+
+
+def _begun(problem: Problem, effects: Sequence[Effect], place: int, law: Effect) -> Standing | None:
+    """The set with a law in the place of another, its values at rest; None where it cannot be simulated on the way."""
+    others = (*effects[:place], law, *effects[place + 1 :])
+    try:
+        there = problem if problem.calibration is None else with_slopes(problem, others)
+        return Standing(*at_rest(*refitted(there, fit(there, others))))
+    except InputError:
+        return None
+
+
+def _likeliest(here: Standing, begun: Sequence[Standing | None], count: int) -> Standing | None:
+    """The likeliest of some sets; None where that at hand is."""
+    best: tuple[float, Standing | None] = (0.0, None)
+    for other in begun:
+        if other is not None and (odds := odds_between(here, other, count)) > best[0]:
             best = odds, other
-    return None if best is None else best[1]
+    return best[1]
 
 
-def _visited(problem: Problem, effects: tuple[Effect, ...]) -> FloatArray:
+def _visited(problem: Problem, effects: Sequence[Effect]) -> FloatArray:
     """Places of the table at the fitted rows of all recordings [m], (n,)."""
     runs = scene_of(problem, effects).runs
     return np.concatenate([run.table_position[e.fit_rows] for run, e in zip(runs, problem.evidence, strict=True)])

@@ -68,6 +68,7 @@ class Attempt:
         problem: recordings with the samples that this candidate can predict.
         evenly: the comparison with every block over what is left of it.
         starts: how many were tried.
+        promised: squared error that one linear step of its start would take, once it is fitted; 0 before.
     """
 
     name: str
@@ -76,6 +77,7 @@ class Attempt:
     problem: Problem
     evenly: Comparison
     starts: int = 1
+    promised: float = 0.0
 
     @property
     def pays(self) -> bool:
@@ -178,10 +180,12 @@ def refined(scene: Scene, attempt: Attempt) -> Attempt | None:
     """The candidate fitted while what was found before stays as it is; None where it cannot be simulated."""
     free = [False] * len(scene.found) + [True]
     result = fit(attempt.problem, attempt.fit.effects, free, FIT_ITERATIONS)
+    promised = error_of(attempt.problem, scene.found) - attempt.fit.squared_error
     try:
-        return replace(_usable(scene, attempt.problem, attempt.name, result), starts=attempt.starts)
+        done = _usable(scene, attempt.problem, attempt.name, result)
     except InputError:
         return None
+    return replace(done, starts=attempt.starts, promised=promised)
 
 
 def _usable(scene: Scene, problem: Problem, name: str, result: Fit) -> Attempt:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from feeddrive.diagnosis.finding.attempt import PROMISE, Attempt, refined, started
 from feeddrive.diagnosis.finding.members import Member, member
 from feeddrive.diagnosis.finding.scene import Candidate, Scene
+from feeddrive.diagnosis.likelihood.cross_validation import LEAST_GAIN
 from feeddrive.diagnosis.likelihood.fit import Fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import same_samples
@@ -72,27 +73,35 @@ def _calibrated(problem: Problem, name: str) -> str:
 
 def _promising_refined(scene: Scene, found: Fit, attempts: list[Attempt], pool: ThreadPoolExecutor) -> list[Attempt]:
     """The attempts, the best first, those fitted that promise a fair part of the best."""
-    waiting = sorted(attempts, key=lambda attempt: -_promise(scene, found, attempt))
+    most = max((_taken(scene, found, attempt) for attempt in attempts), default=0.0)
+    waiting = sorted(attempts, key=lambda attempt: -_promise(scene, found, attempt, most))
     done: list[Attempt] = []
     while waiting and not scene.problem.budget.is_spent:
         best = max((attempt.comparison.gain for attempt in done), default=0.0)
-        if _promise(scene, found, waiting[0]) <= max(PROMISE, FAIR_PART * best):
+        if _promise(scene, found, waiting[0], most) <= max(PROMISE, FAIR_PART * best):
             break
         now, waiting = waiting[:AT_ONCE], waiting[AT_ONCE:]
         done += [attempt for attempt in pool.map(lambda one: refined(scene, one), now) if attempt is not None]
     return sorted([*done, *waiting], key=lambda attempt: -attempt.comparison.gain)
 
 
-def _promise(scene: Scene, found: Fit, attempt: Attempt) -> float:
-    """What an attempt brings on blocks left out, or by its step where that is a fair part of all that is left.
+def _promise(scene: Scene, found: Fit, attempt: Attempt, most: float) -> float:
+    """What an attempt brings on blocks left out, or by its step where that is a fair part of what any takes.
 
-    A step is as far off as its law bends: a place that is passed at a few speeds is then met, and a block left out not.
+    A step is as far off as its law bends: a place that is passed at a few speeds is then met, and a block left out not;
+    a stiffness that falls over the stroke moves a resonance, and beside a first step of a third of the way stood a lead
+    error that was none.
     """
     gain = attempt.comparison.gain
-    if gain > PROMISE or not same_samples(attempt.problem, scene.problem):
-        return gain
-    taken = 1.0 - attempt.fit.squared_error / found.squared_error if found.squared_error > 0 else 0.0
-    return taken if taken > FAIR_PART else gain
+    taken = _taken(scene, found, attempt)
+    return taken if gain <= PROMISE and taken > max(LEAST_GAIN, FAIR_PART * most) else gain
+
+
+def _taken(scene: Scene, found: Fit, attempt: Attempt) -> float:
+    """Share of the squared error that an attempt takes where it is fitted; none where it declines some samples."""
+    if not found.squared_error > 0 or not same_samples(attempt.problem, scene.problem):
+        return 0.0
+    return 1.0 - attempt.fit.squared_error / found.squared_error
 
 
 def _best_per_place(attempts: Sequence[Attempt]) -> list[Attempt]:

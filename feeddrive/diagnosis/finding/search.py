@@ -18,7 +18,7 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated, moved
 from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.calibration.value_slopes import ENOUGH
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
-from feeddrive.diagnosis.finding.along_the_stroke import with_declared_stiffness
+from feeddrive.diagnosis.finding.along_the_stroke import with_declared_stiffness, with_parabola_from_line
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt
 from feeddrive.diagnosis.finding.bristle_form import of_likelier_bristle
 from feeddrive.diagnosis.finding.curve_in_place import (
@@ -48,6 +48,7 @@ from feeddrive.diagnosis.finding.refitting import (
 )
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
+from feeddrive.diagnosis.finding.short_step import with_values_moved
 from feeddrive.diagnosis.finding.simpler_law import (
     as_force,
     as_payload,
@@ -255,6 +256,7 @@ def _asked(
     """What may be added to a set or take its place, asked in one round."""
     now = one_round(scene_of(problem, found.effects), found, impossible, denied, number)
     taken, near = likelier(problem, found, now, denied)
+    taken = with_values_moved(problem, found, now, taken, denied)
     if taken is None and Backlash.name not in denied:
         taken = with_play(problem, found, now.count)
     return _Asked(now, of_likelier_law(taken, now.count, denied), near)
@@ -304,7 +306,8 @@ def _refitted_with(asked: _Asked, found: Fit, denied: Container[str]) -> tuple[P
     there = refitted(with_curves_of(problem, taken.fit.effects), taken.fit)
     there = as_force(*there, asked.now.count) if ConstantForce.name not in denied else there
     there = of_likelier_bristle(*as_payload(*there, asked.now.count), asked.now.count)
-    return with_curve_for_flank(*there)
+    line = with_parabola_from_line(Standing(*there), asked.now.count)
+    return with_curve_for_flank(*(there if line is None else (line.problem, line.fit)))
 
 
 def _ended(problem: Problem, found: Fit) -> tuple[tuple[Problem, Fit] | None, Problem, Fit, list[Effect]]:
