@@ -51,8 +51,8 @@ def test_declared_values_of_a_rival_are_asked_on_the_samples_of_both() -> None:
 @pytest.mark.parametrize(
     ("seed", "lag", "takes_its_place"),
     [
-        (701_359, 1.005e-7, False),  # a play of a step of the encoder, whose edges the steps blur
-        (701_665, 6.7e-8, True),  # lost preload, 0.51: a fifth of a step
+        (701_617, 7.55e-9, False),  # a play of two steps of the encoder, whose edges the steps blur
+        (9871, 4.43e-7, True),  # lost preload: two steps and a half
     ],
 )
 def test_a_lost_preload_takes_the_place_of_a_play_by_its_ratio(
