@@ -69,6 +69,7 @@ from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.effects.transmission.backlash import Backlash
+from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
 
 MOST_ROUNDS = 12
 """Sets gone through at most; an axis that lacks more needs another declaration."""
@@ -306,8 +307,10 @@ def _refitted_with(asked: _Asked, found: Fit, denied: Container[str]) -> tuple[P
     there = refitted(with_curves_of(problem, taken.fit.effects), taken.fit)
     there = as_force(*there, asked.now.count) if ConstantForce.name not in denied else there
     there = of_likelier_bristle(*as_payload(*there, asked.now.count), asked.now.count)
-    line = with_parabola_from_line(Standing(*there), asked.now.count)
-    return with_curve_for_flank(*(there if line is None else (line.problem, line.fit)))
+    if StiffnessVsPosition.name in taken.names:
+        line = with_parabola_from_line(Standing(*there), asked.now.count)
+        there = there if line is None else (line.problem, line.fit)
+    return with_curve_for_flank(*there)
 
 
 def _ended(problem: Problem, found: Fit) -> tuple[tuple[Problem, Fit] | None, Problem, Fit, list[Effect]]:
