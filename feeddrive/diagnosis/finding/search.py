@@ -98,6 +98,7 @@ class Search:
         opened: problem and fit with the curves of its laws open; None where none is.
         asked: what was asked of the judged recordings beside it and beside sets made of it (`recordings.compared`).
         denied: names that were met and are not reported, to why; a search that goes on from this one asks for none.
+        weighed: fits, of it and of sets made of it, whose members were weighed with values at rest, and the members.
     """
 
     problem: Problem
@@ -111,6 +112,7 @@ class Search:
     opened: tuple[Problem, Fit] | None = None
     asked: list[Any] = field(default_factory=list, compare=False)
     denied: dict[str, str] = field(default_factory=dict)
+    weighed: list[tuple[Fit, Any]] = field(default_factory=list, compare=False)
 
     @property
     def reasons(self) -> dict[str, str]:

@@ -9,7 +9,7 @@ are, are not held up.
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Container, Sequence
 
 from feeddrive.diagnosis.calibration.calibrate import of_hours
 from feeddrive.diagnosis.calibration.together import fitted_together
@@ -20,6 +20,7 @@ from feeddrive.diagnosis.finding.round import FAIR_PART, Round
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between, same_samples
+from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 
 HALF = 0.5
@@ -42,22 +43,25 @@ def with_values_moved(
         return taken
     most = found.squared_error - (found if taken is None else taken.fit).squared_error
     short = [one for one in now.attempts if one.name not in denied and _fell_short(problem, found, one, most)]
-    at_hand = Standing(problem, found)
+    if not short or problem.budget.skips("beside moving declared values", *(one.name for one in short)):
+        return taken
+    at_hand = _in_turn(problem, found.effects)  # values come to rest without the law as well
     for attempt in sorted(short, key=lambda one: -one.promised)[:FITTED]:
-        if problem.budget.skips("beside moving declared values", attempt.name):
-            break
         try:
-            there, effects = fitted_together(problem, (*found.effects, attempt.fit.effects[-1]))
-            there, its = at_rest(there, fit(there, effects, iterations=JOINT_ITERATIONS))
-            refuse_at_an_end(there, its.effects[-1:])
-            other = Standing(there, its)
+            other = _in_turn(problem, (*found.effects, attempt.fit.effects[-1]))
+            refuse_at_an_end(other.problem, other.fit.effects[-1:])
             odds = odds_between(at_hand, other, now.count)
-            best = odds > 0 and (taken is None or odds_between(taken, other, now.count) > 0)
         except InputError:  # a machine on the way cannot be simulated
             continue
-        if best and gain_between(at_hand, other).pays:
-            taken = Taken(there, its, attempt.name, odds)
+        if odds > (0.0 if taken is None else taken.odds) and gain_between(at_hand, other).pays:
+            taken = Taken(other.problem, other.fit, attempt.name, odds)
     return taken
+
+
+def _in_turn(problem: Problem, effects: Sequence[Effect]) -> Standing:
+    """A set and the declared values fitted in turn, until no step leads to a likelier plant."""
+    there, fitted = fitted_together(problem, effects)
+    return Standing(*at_rest(there, fit(there, fitted, iterations=JOINT_ITERATIONS)))
 
 
 def _fell_short(problem: Problem, found: Fit, attempt: Attempt, most: float) -> bool:
