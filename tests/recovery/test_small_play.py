@@ -54,6 +54,7 @@ def test_small_play_is_found_where_lost_preload_stood_in_for_it(problem: Problem
         (599, {"backlash"}),  # was nothing, or preload_loss
         (3421, {"preload_loss"}),  # 12 N at a ratio of 0.41: was backlash, in a set with it
         (3819, {"channel_delay", "backlash"}),  # values that stood in for the delay hid the play: the delay alone
+        (10012, {"backlash"}),  # a braked mode stood beside it, by slopes near it; values at rest without it tell none
     ],
 )
 def test_small_play_and_lost_preload_are_named_alone(seed: int, names: set[str], tmp_path: Path) -> None:

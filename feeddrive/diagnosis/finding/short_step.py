@@ -43,7 +43,7 @@ def with_values_moved(
         return taken
     most = found.squared_error - (found if taken is None else taken.fit).squared_error
     short = [one for one in now.attempts if one.name not in denied and _fell_short(problem, found, one, most)]
-    if not short or problem.budget.skips("beside moving declared values", *(one.name for one in short)):
+    if not short or problem.budget.skips("laws that fell short of their first step"):
         return taken
     at_hand = _in_turn(problem, found.effects)  # values come to rest without the law as well
     for attempt in sorted(short, key=lambda one: -one.promised)[:FITTED]:
