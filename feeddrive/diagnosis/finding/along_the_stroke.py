@@ -5,7 +5,7 @@
 k, b and m are told by the places that were visited alone: there a softer screw of one form is nearly a stiff one of
 another. Steps lead along that valley by little, as it bends, and a search that met the law beside a stiffness that
 stood in for it stays there. So the same compliance over what is visited is written about the declared k, as a straight
-line and as a parabola, and both are fitted to their ends.
+line and as a parabola, and both are fitted to their ends. And a parabola that is new begins at the line that does best.
 """
 
 from __future__ import annotations
@@ -98,8 +98,11 @@ def _likeliest(here: Standing, begun: Sequence[Standing | None], count: int) -> 
     """The likeliest of some sets; None where that at hand is."""
     best: tuple[float, Standing | None] = (0.0, None)
     for other in begun:
-        if other is not None and (odds := odds_between(here, other, count)) > best[0]:
-            best = odds, other
+        try:
+            if other is not None and (odds := odds_between(here, other, count)) > best[0]:
+                best = odds, other
+        except InputError:  # cannot be simulated on the motions that the encoder's steps may hide
+            continue
     return best[1]
 
 
