@@ -146,6 +146,7 @@ def _reported(
     """What was found, as it is reported, and the effects to add to the plant."""
     recordings, validation = begun.files
     searched, judged, refinement = settled.searched, settled.judged, settled.refinement
+    odds = odds_for(settled.weighed, settled.rivals)
     found = searched.search
     budget = begun.problem.budget
     progress("looking at what is left")
@@ -169,7 +170,7 @@ def _reported(
         fit=_stamps(recordings),
         validate=_stamps(validation or recordings),
         channels=channel_results(found.problem, after),
-        effects=with_carrying(effect_results(found, shares, spans, odds_for(found, settled.rivals)), compared),
+        effects=with_carrying(effect_results(found, shares, spans, odds), compared),
         possible=possible_effects(found, settled.rivals),
         refused=refused_effects(found),
         ambiguous=tuple(one.names for one in alike),

@@ -35,6 +35,7 @@ class Settled:
         rivals: per effect, those that would do as well.
         judged, rehomed: the recordings judged on, and remarks about their zeros.
         refinement: in closed-loop simulation.
+        weighed: the search as its names were weighed, before that refinement.
     """
 
     searched: Searched
@@ -42,6 +43,7 @@ class Settled:
     judged: list[Judged]
     rehomed: tuple[str, ...]
     refinement: Refinement
+    weighed: Search
 
 
 def settle(begun: Begun, simulate: bool, progress: Progress, start: Sequence[Effect]) -> Settled:
@@ -97,7 +99,7 @@ def settle(begun: Begun, simulate: bool, progress: Progress, start: Sequence[Eff
         rivals = rivals_of(found, judged)
     found, judged = not_worse_than_declared(found, judged, judge)
     judged, rehomed = _judged(found, evidence)
-    refinement = Refinement(found, (judged, rehomed))
+    weighed, refinement = found, Refinement(found, (judged, rehomed))
     if simulate and not budget.skips("the simulated loop"):
         progress("simulating the closed loop, and refining in simulation")
         refinement = refined(found, refinement.outcome, lambda other: _judged(other, evidence))
@@ -105,7 +107,7 @@ def settle(begun: Begun, simulate: bool, progress: Progress, start: Sequence[Eff
     changes = searched.changes
     if changes is not None:  # beside the declared values of the names that are left
         changes = replace(changes, problem=found.problem, fit=found.fit)
-    return Settled(Searched(found, changes), rivals, judged, rehomed, refinement)
+    return Settled(Searched(found, changes), rivals, judged, rehomed, refinement, weighed)
 
 
 def _names(found: Search) -> set[str]:

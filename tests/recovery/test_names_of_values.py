@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.calibration.beyond import is_beyond
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.calibration.declared import as_effect, calibrated_values, said_share
 from feeddrive.diagnosis.calibration.stated import said_by_effects
 from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes
+from feeddrive.diagnosis.certainty import inclusion
 from feeddrive.diagnosis.certainty.inclusion import OPEN, _members_at_rest
 from feeddrive.diagnosis.finding.refitting import with_value_back, with_value_from_declared
 from feeddrive.diagnosis.finding.search import Search
@@ -18,8 +21,10 @@ from feeddrive.diagnosis.finding.sets import members_weighed
 from feeddrive.diagnosis.judging.asked_of_fit import values_within_tolerance
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
 from feeddrive.effects.base import Port
 from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.friction.stribeck import Stribeck
 from tests.recovery.rigid_runs import MASS, Truth
 from tests.recovery.test_numbers_beside import catalogued
@@ -81,6 +86,23 @@ def test_odds_of_a_name_do_not_depend_on_where_the_declared_values_stood() -> No
     )
     # nothing was planted; rest is where a step takes less than half a nat, with the effect and without it
     assert there.gain > OPEN and there.gain == pytest.approx(here.gain, abs=1.0)
+
+
+@pytest.mark.parametrize(("factor", "stands"), [(0.65, True), (0.7, True), (0.75, False), (0.85, False)])
+def test_a_tolerance_denies_what_evidence_alone_would_grant(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, factor: float, stands: bool
+) -> None:
+    """A friction that is told to a thousandth costs no more beyond its tolerance than a name does, and is named."""
+    problem = calibrated(begun(tmp_path, Truth(coulomb=factor)))
+    less = FrictionDeviation.of(Port.TABLE, coulomb_factor=factor, viscous_factor=1.0)
+    there, effects = said_by_effects(problem, [less])
+    found = fit(there, effects)
+    monkeypatch.setattr(inclusion, "SURE", math.inf)  # no member is: as behind an encoder whose steps show
+    (one,) = _members_at_rest(Search(there, found, (), (), {}, tried=30))
+    assert is_beyond(there, [], found.effects[0]) is stands
+    assert one.without is not None
+    assert odds_between(Standing(there, found), one.without, 30) > 0  # a value may be as far off as that
+    assert (one.gain < -OPEN) is stands
 
 
 @pytest.mark.parametrize("away", [-1e4, 1e4])

@@ -40,8 +40,8 @@ def test_values_that_begin_elsewhere_come_to_the_same_rest(tmp_path: Path, away:
     # each ends where a step takes less than half a nat: a variance of the doubled cost
     assert abs(rest_at - begun_at) < 2 * variance
     assert unmoved > rest_at + 100 * variance
-    again, found = stepped_together(rest[0], rest[1].effects)
-    assert rest_at - cost(again.settled(found.effects), found.effects, variance) < variance
+    again, effects = stepped_together(rest[0], rest[1].effects)
+    assert rest_at - cost(again.settled(effects), effects, variance) < variance
 
 
 @pytest.mark.parametrize("away", [-3.0, 3.0])
@@ -69,13 +69,10 @@ def test_tolerances_are_asked_of_values_at_rest(tmp_path: Path, monkeypatch: pyt
     searching.search(near.at_values(near.calibration.coordinates + 1.5))  # within their tolerances, not at rest
     assert asked
     for problem, found in asked:
-        there, then = stepped_together(problem, found.effects)
+        there, effects = stepped_together(problem, found.effects)
         variance = near.calibration.variance
         # no step takes half a nat more: a variance of the doubled cost
-        assert (
-            cost(problem, found.effects, variance) - cost(there.settled(then.effects), then.effects, variance)
-            < variance
-        )
+        assert cost(problem, found.effects, variance) - cost(there.settled(effects), effects, variance) < variance
 
 
 def test_a_search_ends_with_a_round_beside_values_at_rest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from itertools import chain, repeat
 
 import numpy as np
-from scipy.special import chdtri
+from scipy.special import chdtrc, chdtri
 
 from feeddrive.diagnosis.calibration.calibrate import (
     PASSES,
@@ -128,6 +128,27 @@ def is_beyond(problem: Problem, rest: Sequence[Effect], effect: Effect) -> bool:
     there = with_new_slopes(back.at_values(coordinates), rest)
     told = known_values(there, fit(there, rest))
     return told is not None and _gain(told, places) > _sure(len(places))
+
+
+def log_chance_of_values(problem: Problem, without: Fit, effect: Effect) -> float:
+    """Logarithm of the chance of what recordings say of declared values, beside a set without the effect on them.
+
+    Args:
+        problem: with these values among those that are fitted.
+        without: the set.
+        effect: which says that they are other.
+
+    Returns:
+        Zero where they are not asserted to be beyond their tolerances, or the effect says nothing of any.
+    """
+    told = known_values(problem, without)
+    if told is None:
+        return 0.0
+    places = tuple(i for i, value in enumerate(told.values) if value.name and is_said_by(value, effect))
+    gain = _gain(told, places) if places else 0.0
+    if not places or gain <= _sure(len(places)):
+        return 0.0
+    return math.log(max(float(chdtrc(len(places), gain)), np.finfo(float).tiny))
 
 
 def with_torque_scale(problem: Problem, found: Fit) -> Problem | None:

@@ -8,12 +8,14 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibrate import PASSES, moved, recalibrated
 from feeddrive.diagnosis.calibration.value_slopes import ENOUGH
-from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.fit import fitted_effects
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.base import Effect
 
 
-def stepped_together(problem: Problem, effects: Sequence[Effect], iterations: int = 12) -> tuple[Problem, Fit]:
+def stepped_together(
+    problem: Problem, effects: Sequence[Effect], iterations: int = 12
+) -> tuple[Problem, tuple[Effect, ...]]:
     """Declared values by slopes of where they are, and the effects beside them.
 
     Args:
@@ -22,24 +24,31 @@ def stepped_together(problem: Problem, effects: Sequence[Effect], iterations: in
         iterations: of the fit of the effects, at most.
     """
     there = recalibrated(problem, effects)
-    return there, fit(there, effects, iterations=iterations)
+    return there, fitted_effects(there, effects, iterations)
 
 
 def fitted_together(problem: Problem, effects: Sequence[Effect], passes: int = PASSES) -> tuple[Problem, list[Effect]]:
-    """Effects and declared values fitted in turn until neither moves.
+    """Effects and declared values fitted in turn until neither moves, or the recordings are no likelier for it.
+
+    A pass counts that makes them likelier by half a nat, as one value off by a deviation: values that the recordings
+    hardly tell apart never come to rest, and where slopes turn within a step passes lead to and fro.
 
     Args:
         problem: with the values to begin from.
         effects: beside them.
-        passes: at most; values that the recordings hardly tell apart never come to rest.
+        passes: at most.
     """
     if problem.calibration is None:  # all declared values are exact
-        return problem, [*fit(problem, effects).effects]
-    for _ in range(passes):
+        return problem, [*fitted_effects(problem, effects)]
+    for turn in range(passes):
         before, fitted = stepped_together(problem, effects)
-        effects = fitted.effects
-        problem = before.settled(effects)
-        if np.max(np.abs(moved(before, problem)), initial=0.0) < ENOUGH:
+        there = before.settled(fitted)
+        assert there.calibration is not None
+        variance = there.calibration.variance
+        if turn and cost(problem, effects, variance) - cost(there, fitted, variance) <= variance:
+            break
+        problem, effects = there, fitted
+        if np.max(np.abs(moved(before, there)), initial=0.0) < ENOUGH:
             break
     return problem, [*effects]
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes, with_s
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.likelihood.coordinates import absent_coordinates, read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
-from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, fit, linear_step
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between
 from feeddrive.diagnosis.motion.row_steps import in_told_steps
@@ -46,9 +47,10 @@ def refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     # That of hours has begun as declared, and other weights are no lower error.
     begun = of_hours(there) or not problem.calibration.coordinates.any()
     if not begun and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
-        other = stepped_together(at_declared(problem), found.effects, JOINT_ITERATIONS)
-        variance = there.calibration.variance
-        result = min(result, other, key=lambda one: cost(one[0].settled(one[1].effects), one[1].effects, variance))
+        other, effects = stepped_together(at_declared(problem), found.effects, JOINT_ITERATIONS)
+        both, variance = ((there, result[1].effects), (other, effects)), there.calibration.variance
+        here, from_declared = (cost(one.settled(some), some, variance) for one, some in both)
+        result = result if here <= from_declared else (other, fit(other, effects, iterations=0))
     return balanced(*result)
 
 
@@ -67,17 +69,35 @@ def at_rest(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
 
     A set that is new moves values that stood in for it, and slopes are those of where they stood: the first step is
     rarely the last, and every one here has slopes of its own. A step counts that makes the recordings likelier by half
-    a nat, as one value off by a deviation. The slopes at the end are those of where it ends: masses, stiffnesses and
-    the torque constant that all grow alike change no prediction, and slopes of elsewhere would tell them apart.
+    a nat, as one value off by a deviation; one that promises less is not taken. The slopes at the end are those of
+    where it ends: masses, stiffnesses and the torque constant that all grow alike change no prediction, and slopes of
+    elsewhere would tell them apart.
     """
+    for there in to_rest(problem, found):
+        problem, found = there.problem, there.fit
+    return problem, found
+
+
+class OnTheWay(NamedTuple):
+    """A set on its way to rest, with slopes of where it is, and what the next step promises [nats]."""
+
+    problem: Problem
+    fit: Fit
+    promised: float
+
+
+def to_rest(problem: Problem, found: Fit) -> Iterator[OnTheWay]:
+    """The steps of a set to rest (`at_rest`); only where it is, where that is rest or no value is fitted."""
     known = problem.calibration
     if known is None or not known.values or of_hours(problem):
-        return problem, found
-    problem, variance = with_new_slopes(problem, found.effects), known.variance
+        yield OnTheWay(problem, found, 0.0)
+        return
+    problem, variance, moved_on = with_new_slopes(problem, found.effects), known.variance, False
     for _ in range(PASSES):
-        there, then = stepped_together(problem, found.effects, JOINT_ITERATIONS)
-        there, effects = there.settled(then.effects), then.effects
-        before, after = cost(problem, found.effects, variance), cost(there, effects, variance)
+        before = cost(problem, found.effects, variance)
+        there, effects = stepped_together(problem, found.effects, JOINT_ITERATIONS)
+        there = there.settled(effects)
+        after = cost(there, effects, variance)
         for _ in range(HALVINGS):
             if after <= before:
                 break
@@ -86,8 +106,21 @@ def at_rest(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
         if before - after <= variance:
             break
         problem = with_new_slopes(there, effects)
-        found = fit(problem, effects, iterations=0)
-    return problem, fit(problem, found.effects, iterations=0)
+        found, moved_on = fit(problem, effects, iterations=0), True
+        promised = _promised(problem, found)
+        yield OnTheWay(problem, found, promised)
+        if promised <= 0.5:
+            break
+    if not moved_on:
+        yield OnTheWay(problem, fit(problem, found.effects, iterations=0), 0.0)
+
+
+def _promised(problem: Problem, found: Fit) -> float:
+    """What one linear step of the declared values and the effects takes from `cost` [nats]."""
+    assert problem.calibration is not None
+    variance = problem.calibration.variance
+    left = found.residual - found.jacobian @ linear_step(found.jacobian, found.residual)
+    return 0.5 * (cost(problem, found.effects, variance) - float(left @ left)) / variance
 
 
 def _half_way(

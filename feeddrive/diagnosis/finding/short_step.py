@@ -19,7 +19,13 @@ from feeddrive.diagnosis.finding.refitting import at_rest
 from feeddrive.diagnosis.finding.round import FAIR_PART, Round
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between, same_samples
+from feeddrive.diagnosis.likelihood.set_evidence import (
+    Standing,
+    gain_between,
+    log_prior_of_size,
+    odds_between,
+    same_samples,
+)
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 
@@ -41,8 +47,8 @@ def with_values_moved(
     """
     if problem.calibration is None or of_hours(problem):
         return taken
-    most = found.squared_error - (found if taken is None else taken.fit).squared_error
-    short = [one for one in now.attempts if one.name not in denied and _fell_short(problem, found, one, most)]
+    least = _least_promise(problem, found, now, taken)
+    short = [one for one in now.attempts if one.name not in denied and _fell_short(problem, found, one, least)]
     if not short or problem.budget.skips("laws that fell short of their first step"):
         return taken
     at_hand = _in_turn(problem, found.effects)  # values come to rest without the law as well
@@ -64,9 +70,24 @@ def _in_turn(problem: Problem, effects: Sequence[Effect]) -> Standing:
     return Standing(*at_rest(there, fit(there, fitted, iterations=JOINT_ITERATIONS)))
 
 
-def _fell_short(problem: Problem, found: Fit, attempt: Attempt, most: float) -> bool:
-    """Whether a fit took less than `HALF` of what its first step promised, and that is a fair part of `most`."""
+def _least_promise(problem: Problem, found: Fit, now: Round, taken: Taken | None) -> float:
+    """Squared error that a first step promises at least, to be asked: as much as makes it the likeliest set.
+
+    That is a fair part of what the set at hand for the likeliest takes, and no less likely, values being moved or not:
+    what one more name costs where none is likelier.
+    """
+    assert problem.calibration is not None
+    if taken is None:
+        size = len(found.effects)
+        nats, most = log_prior_of_size(size, now.count) - log_prior_of_size(size + 1, now.count), 0.0
+    else:
+        nats, most = taken.odds, found.squared_error - taken.fit.squared_error
+    return max(FAIR_PART * most, 2 * problem.calibration.variance * nats)
+
+
+def _fell_short(problem: Problem, found: Fit, attempt: Attempt, least: float) -> bool:
+    """Whether a fit took less than `HALF` of what its first step promised, and that is more than the `least`."""
     if not attempt.promised or not same_samples(attempt.problem, problem):
         return False
     took = found.squared_error - attempt.fit.squared_error
-    return took < HALF * attempt.promised and attempt.promised > FAIR_PART * most
+    return took < HALF * attempt.promised and attempt.promised > least

@@ -83,6 +83,23 @@ def fit(
         The fit, its Jacobian taken at the end.
     """
     chosen = [True] * len(effects) if free is None else list(free)
+    at, jacobian = _descended(problem, effects, chosen, iterations, still)
+    if jacobian is None:
+        jacobian = jacobian_of(problem, at.effects, chosen, at.predicted)
+    moved = [effect for effect, is_free in zip(at.effects, chosen, strict=True) if is_free]
+    held = chosen.index(True) if any(chosen) else len(chosen)
+    return Fit(tuple(at.effects), at.residual, jacobian, read_coordinates(moved, problem.plant), held)
+
+
+def fitted_effects(problem: Problem, effects: Sequence[Effect], iterations: int = 12) -> tuple[Effect, ...]:
+    """Effects as `fit` leaves them, all free, without the slopes at the end: those are simulations."""
+    return tuple(_descended(problem, effects, [True] * len(effects), iterations, ())[0].effects)
+
+
+def _descended(
+    problem: Problem, effects: Sequence[Effect], chosen: Sequence[bool], iterations: int, still: Sequence[int]
+) -> tuple[_State, FloatArray | None]:
+    """Where the steps of a fit end, and the Jacobian there; None where the last one was taken elsewhere."""
     measured, predicted = problem.measured, problem.predicted(effects)
     at = _State(list(effects), predicted, measured - predicted)
     jacobian, exact = jacobian_of(problem, at.effects, chosen, at.predicted), True
@@ -111,11 +128,7 @@ def fit(
             jacobian = jacobian + np.outer(bent, lower.step) / float(lower.step @ lower.step)
         else:
             jacobian, exact = jacobian_of(problem, at.effects, chosen, at.predicted), True
-    if not exact:
-        jacobian = jacobian_of(problem, at.effects, chosen, at.predicted)
-    moved = [effect for effect, is_free in zip(at.effects, chosen, strict=True) if is_free]
-    held = chosen.index(True) if any(chosen) else len(chosen)
-    return Fit(tuple(at.effects), at.residual, jacobian, read_coordinates(moved, problem.plant), held)
+    return at, jacobian if exact else None
 
 
 def error_of(problem: Problem, effects: Sequence[Effect]) -> float:
