@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
+from feeddrive.diagnosis.finding.end_of_search import ended
 from feeddrive.diagnosis.finding.materiality import LEAST_MASS_SHARE
-from feeddrive.diagnosis.finding.search import _ended
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.prediction import AxisPredictor
@@ -27,6 +27,6 @@ def test_a_part_that_shakes_is_reported_where_it_matters_or_is_seen(share: float
     mass = share * LEAST_MASS_SHARE * plant.chain.values["table_mass"] * 2 * damping
     mode = StructuralMode.of(mass=mass, frequency=57.0, damping=damping)
     problem = Problem(plant, (drawn(plant, fine, [mode], 1),), AxisPredictor())
-    _, _, found, small = _ended(problem, fit(problem, [mode]))
+    _, _, found, small = ended(problem, fit(problem, [mode]))
     assert [one.name for one in found.effects] == [mode.name] * reported
     assert [one.name for one in small] == [mode.name] * (not reported)

@@ -17,3 +17,8 @@ def members_of(effects: Sequence[Effect]) -> tuple[Member, ...]:
 def member(effect: Effect) -> Member:
     """Name, port and place of an effect."""
     return effect.name, str(effect.port), effect.place
+
+
+def rest_of(effects: Sequence[Effect], gone: Sequence[Effect]) -> list[Effect]:
+    """Effects of a set but for some of them."""
+    return [one for one in effects if not any(one is other for other in gone)]

@@ -20,6 +20,7 @@ from feeddrive.diagnosis.calibration.stated import is_within_tolerance, said_by_
 from feeddrive.diagnosis.calibration.together import cost, fitted_together, stepped_together
 from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes, with_slopes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
+from feeddrive.diagnosis.finding.members import rest_of
 from feeddrive.diagnosis.likelihood.coordinates import absent_coordinates, read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit, linear_step
@@ -232,7 +233,7 @@ def with_softer_spring(problem: Problem, found: Fit, gone: Sequence[Effect]) -> 
     place = "nut" if "nut_stiffness" in problem.plant.chain_values() else WHOLE
     factor = StiffnessDeviation.parameter("factor")
     ratio = min(max(number(soft.values["ratio"]), factor.minimum), factor.maximum)
-    rest = [effect for effect in found.effects if not any(effect is one for one in gone)]
+    rest = rest_of(found.effects, gone)
     own, effects = said_by_effects(problem, [*rest, StiffnessDeviation.of(None, place, factor=ratio)])
     there, result = refitted(own, fit(own, effects, iterations=JOINT_ITERATIONS))
     *others, softer = result.effects

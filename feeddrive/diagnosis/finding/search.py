@@ -8,7 +8,7 @@ all effects together, and the likeliest of them is taken if what it adds also lo
 from __future__ import annotations
 
 from collections.abc import Callable, Container
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -19,7 +19,7 @@ from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.calibration.value_slopes import ENOUGH
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
 from feeddrive.diagnosis.finding.along_the_stroke import with_declared_stiffness, with_parabola_from_line
-from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt
+from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.finding.bristle_form import of_likelier_bristle
 from feeddrive.diagnosis.finding.curve_in_place import (
     curve_of_value,
@@ -28,10 +28,10 @@ from feeddrive.diagnosis.finding.curve_in_place import (
     with_level_in_curve,
 )
 from feeddrive.diagnosis.finding.elsewhere import at_likelier_place
+from feeddrive.diagnosis.finding.end_of_search import ended
 from feeddrive.diagnosis.finding.flank import with_curve_for_flank
 from feeddrive.diagnosis.finding.likelier import Near, Taken, likelier, of_likelier_law, with_play
-from feeddrive.diagnosis.finding.materiality import is_material_here
-from feeddrive.diagnosis.finding.members import Member, members_of
+from feeddrive.diagnosis.finding.members import Member, members_of, rest_of
 from feeddrive.diagnosis.finding.open_map import open_curves, with_curves_of
 from feeddrive.diagnosis.finding.refitting import (
     at_rest,
@@ -39,7 +39,6 @@ from feeddrive.diagnosis.finding.refitting import (
     begun_as_declared,
     in_steps_told,
     refitted,
-    where_friction_brakes,
     with_scale_beyond,
     with_softer_spring,
     with_value_back,
@@ -62,10 +61,8 @@ from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
-from feeddrive.diagnosis.likelihood.problem import LEVEL, UNEXPLAINED, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import LEVEL_KNOWN, Standing, gain_between, odds_between
-from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
-from feeddrive.effects.base import Effect
+from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.effects.transmission.backlash import Backlash
@@ -206,7 +203,7 @@ def search(
         if others:  # the search goes on with the name that the law has run to
             denied |= dict.fromkeys((effect.name for effect in others), ANOTHER)
             softer = None if StiffnessDeviation.name in denied else with_softer_spring(problem, found, others)
-            problem, found = softer or refitted(problem, fit(problem, _without(found, others)))
+            problem, found = softer or refitted(problem, fit(problem, rest_of(found.effects, others)))
         placed = None if others else at_likelier_place(problem, found, asked.now.count)
         if placed is not None and members_of(placed[1].effects) not in met:
             met |= {members_of(found.effects), members_of(placed[1].effects)}
@@ -247,7 +244,7 @@ def search(
                 break
             problem, found = in_steps_told(*after)
             met.add(members_of(found.effects))
-    opened, problem, found, small = _ended(problem, found)
+    opened, problem, found, small = ended(problem, found)
     denied |= dict.fromkeys((one.name for one in small), SMALL)
     found = with_usual_sizes(problem, found)
     return Search(problem, found, tuple(trials), tuple(rounds), impossible, near, begun, tried, opened, denied=denied)
@@ -313,56 +310,6 @@ def _refitted_with(asked: _Asked, found: Fit, denied: Container[str]) -> tuple[P
         line = with_parabola_from_line(Standing(*there), asked.now.count)
         there = there if line is None else (line.problem, line.fit)
     return with_curve_for_flank(*there)
-
-
-def _ended(problem: Problem, found: Fit) -> tuple[tuple[Problem, Fit] | None, Problem, Fit, list[Effect]]:
-    """The set that is left at the end, all that is left counting again; and effects too small to be reported.
-
-    Before it the set beside the curves of its laws, where any is open.
-
-    One that is small on this machine is reported where the error of a channel shows it: a fine scale sees a part that
-    shakes which is a ten-thousandth of the table.
-    """
-    there = in_steps_told(*refitted(problem, fit(problem, found.effects)))
-    problem, found = where_friction_brakes(*at_rest(*there))
-    closed = with_curves_of(problem, ())  # names are weighed, and rivals tried, against all that is left
-    opened = None if closed is problem else (problem, found)
-    if closed is not problem:
-        problem, found = closed, fit(closed, found.effects, iterations=JOINT_ITERATIONS)
-    small = [one for one in found.effects if not is_material_here(one, problem)]
-    if small:
-        rest = _without(found, small)
-        fewer = without_effects(problem, small, rest)
-        without = fit(fewer, rest)
-        if not _is_seen(Standing(fewer, without), Standing(problem, found)):
-            return None, fewer, without, small
-    return opened, problem, found, []
-
-
-def _is_seen(without: Standing, found: Standing) -> bool:
-    """Whether the square left of a channel is lower with a set than without some of it, by more than it is known to.
-
-    What rows do not tell counts here, since the error that is told holds it. Nothing is seen where less than the noise
-    is left without the set: what a recording without noise holds is then a share of what the simulation misses.
-    """
-    for e, before, after in zip(found.problem.evidence, _squares(without), _squares(found), strict=True):
-        for name, square in after.items():
-            if before[name] > LEVEL**2 * e.kept and square < (1 - LEVEL_KNOWN) * before[name]:
-                return True
-    return False
-
-
-def _squares(one: Standing) -> list[dict[str, float]]:
-    """Per recording, channel to the mean square of its error over the noise at the fitted samples."""
-    whole = [replace(e, between_rows=()) if isinstance(e, AxisEvidence) else e for e in one.problem.evidence]
-    problem = replace(one.problem.settled(one.fit.effects), evidence=tuple(whole)).plain
-    recordings = problem.by_channel(problem.unwhitened(one.fit.effects))
-    return [{name: float(np.mean(rows**2)) for name, rows in channels.items()} for channels in recordings]
-
-
-def _without(found: Fit, gone: list[Effect]) -> list[Effect]:
-    """Effects of a set but for some of them."""
-    return [one for one in found.effects if not any(one is other for other in gone)]
 
 
 def _trial(number: int, attempt: Attempt, taken: bool) -> Trial:
