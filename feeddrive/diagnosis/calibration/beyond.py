@@ -21,7 +21,7 @@ from feeddrive.diagnosis.calibration.declared import (
     as_effect,
     is_said_by,
 )
-from feeddrive.diagnosis.calibration.known import Known, known_values
+from feeddrive.diagnosis.calibration.known import TOLERANCE, Known, known_values
 from feeddrive.diagnosis.calibration.stated import coordinate_said, given_back, said_by_effects
 from feeddrive.diagnosis.calibration.together import cost, fitted_together
 from feeddrive.diagnosis.calibration.value_slopes import ENOUGH, with_new_slopes, with_slopes
@@ -134,19 +134,23 @@ def log_chance_of_values(problem: Problem, without: Fit, effect: Effect) -> floa
     """Logarithm of the chance of what recordings say of declared values, beside a set without the effect on them.
 
     Args:
-        problem: with these values among those that are fitted.
+        problem: with these values among those that are fitted, at rest.
         without: the set.
         effect: which says that they are other.
 
     Returns:
-        Zero where they are not asserted to be beyond their tolerances, or the effect says nothing of any.
+        Zero where it leaves them within their tolerances, or the recordings do not assert that they are beyond, or the
+        effect says nothing of any. What T says of values that are at rest within is said by slopes that bend.
     """
-    told = known_values(problem, without)
-    if told is None:
+    known = problem.calibration
+    if known is None:
         return 0.0
-    places = tuple(i for i, value in enumerate(told.values) if value.name and is_said_by(value, effect))
-    gain = _gain(told, places) if places else 0.0
-    if not places or gain <= _sure(len(places)):
+    places = tuple(i for i, value in enumerate(known.values) if value.name and is_said_by(value, effect))
+    if not np.any(np.abs(known.coordinates[list(places)]) > TOLERANCE):
+        return 0.0
+    told = known_values(problem, without)
+    gain = _gain(told, places) if told is not None else 0.0
+    if gain <= _sure(len(places)):
         return 0.0
     return math.log(max(float(chdtrc(len(places), gain)), np.finfo(float).tiny))
 
