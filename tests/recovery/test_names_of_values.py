@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.calibration.beyond import is_beyond
+from feeddrive.diagnosis.calibration.beyond import is_beyond, log_chance_of_values
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.calibration.declared import as_effect, calibrated_values, said_share
 from feeddrive.diagnosis.calibration.stated import said_by_effects
@@ -103,6 +103,20 @@ def test_a_tolerance_denies_what_evidence_alone_would_grant(
     assert one.without is not None
     assert odds_between(Standing(there, found), one.without, 30) > 0  # a value may be as far off as that
     assert (one.gain < -OPEN) is stands
+
+
+def test_what_slopes_say_of_a_value_that_rests_within_its_tolerance_is_no_finding(tmp_path: Path) -> None:
+    problem, less = (
+        calibrated(begun(tmp_path, Truth(coulomb=0.7))),
+        FrictionDeviation.of(Port.TABLE, coulomb_factor=0.7),
+    )
+    known = problem.calibration
+    assert known is not None
+    (place,) = [i for i, value in enumerate(known.values) if value.key == "table.coulomb"]
+    assert known.coordinates[place] < -2
+    assert log_chance_of_values(problem, fit(problem, ()), less) < -OPEN
+    within = problem.at_values(np.where(np.arange(len(known.values)) == place, -1.0, known.coordinates))
+    assert log_chance_of_values(within, fit(within, ()), less) == 0.0
 
 
 @pytest.mark.parametrize("away", [-1e4, 1e4])
