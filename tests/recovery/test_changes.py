@@ -12,6 +12,7 @@ import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.judging.result import Diagnosis
+from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
@@ -69,6 +70,19 @@ def test_a_level_is_other_in_the_second_recording(rigid: Plant, truth: Truth, pa
     # the error is that of the noise, since each recording has its own level
     (torque,) = result.channels
     assert torque.after.rms < 1.2 * torque.noise_rms
+
+
+@pytest.mark.parametrize(("first", "last"), [(0.01, 0.0), (0.0, 0.01)])
+def test_a_ripple_of_one_recording_alone_is_a_change_and_the_plant_is_as_it_was_last(
+    rigid: Plant, first: float, last: float
+) -> None:
+    recordings = [rigid_run("a", Truth(ripple=first)), rigid_run("b", Truth(ripple=last, seed=2), slow=1.3)]
+    known = TorqueRipple.of(amplitude=0.007, order=3.0, phase=0.0)  # as an earlier diagnosis says
+    result, effects = diagnose(rigid, recordings, start=[known])
+    assert [effect.name for effect in result.effects] == []  # not lacking in every recording
+    assert changed(result)["amplitude", "b"] == pytest.approx(last - first, rel=0.1)
+    # what is not told from none is not carried
+    assert [effect.values["amplitude"] for effect in effects] == ([pytest.approx(last, rel=0.1)] if last else [])
 
 
 def test_a_judged_recording_with_another_level_is_recognised_and_its_error_stays(rigid: Plant) -> None:

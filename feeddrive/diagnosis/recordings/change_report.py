@@ -10,7 +10,7 @@ import numpy as np
 from feeddrive.diagnosis.calibration.stated import is_within_tolerance
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.materiality import is_material
-from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
+from feeddrive.diagnosis.likelihood.coordinates import absent_coordinates, read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.recordings.change_candidates import keys_of, material_difference, targeted
@@ -19,6 +19,7 @@ from feeddrive.diagnosis.recordings.change_words import Moved, change_reading, c
 from feeddrive.diagnosis.recordings.changes import Changes
 from feeddrive.diagnosis.recordings.recordings import Target, in_recording, without_shifts
 from feeddrive.effects.base import Effect
+from feeddrive.effects.base import number as number_of
 from feeddrive.typing import FloatArray
 
 STEP = 1e-6
@@ -115,16 +116,33 @@ def shared_parameters(problem: Problem, effects: Sequence[Effect], changes: Chan
     )
 
 
-def neutral_somewhere(problem: Problem, effects: Sequence[Effect], effect: Effect, count: int) -> bool:
-    """Whether a level is as declared in one of the recordings, so that the declared plant does not lack it.
+def is_as_declared(problem: Problem, changes: Changes, effect: Effect, number: int) -> bool:
+    """Whether a level that differs is as declared in one of the recordings: the declared plant lacks none of it there.
 
-    A declared value is as declared within its tolerance; any other level where it is too small to matter.
+    A declared value is as declared within its tolerance; any other level where it is too small to matter, or is not
+    told from none.
     """
-    for number in range(count):
-        here = in_recording(effects, problem.plant, number)
-        same = [e for e in here if (e.name, e.port, e.place) == (effect.name, effect.port, effect.place)]
-        if same:
-            within = is_within_tolerance(same[-1], problem.plant)
-            if within or not is_material(same[-1], problem.plant):
-                return True
-    return False
+    here = in_recording(changes.fit.effects, problem.plant, number)
+    same = [e for e in here if (e.name, e.port, e.place) == (effect.name, effect.port, effect.place)]
+    if not same:
+        return False
+    within = bool(is_within_tolerance(same[-1], problem.plant))
+    return within or not is_material(same[-1], problem.plant) or is_none(problem, changes, effect, number)
+
+
+def is_none(problem: Problem, changes: Changes, effect: Effect, number: int) -> bool:
+    """Whether an effect of which a level differs is not told from none in one of the recordings.
+
+    The intervals of all that differs hold none of it. A declared value is never none.
+    """
+    if is_within_tolerance(effect, problem.plant) is not None:
+        return False
+    absent, _ = absent_coordinates([effect], problem.plant)
+    at = read_coordinates([effect], problem.plant)
+    (none,) = write_coordinates([effect], problem.plant, np.where(np.isnan(absent), at, absent))
+    sizes = [
+        _compared_values(problem, changes.fit, target, number, None)[0]  # of a sine that is its amplitude
+        for target in changes.targets
+        if target.meets(effect) and keys_of(changes.fit.effects, problem, target)
+    ]
+    return bool(sizes) and all(abs(one.here.value - number_of(none.values[one.key])) <= one.here.half for one in sizes)

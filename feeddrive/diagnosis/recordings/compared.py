@@ -29,7 +29,8 @@ from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import declining
 from feeddrive.diagnosis.recordings.change_report import (
     Question,
-    neutral_somewhere,
+    is_as_declared,
+    is_none,
     parameter_changes,
     per_recording,
     shared_parameters,
@@ -92,24 +93,34 @@ def recording_names(names: Sequence[str]) -> list[str]:
 
 
 def _listed(searched: Searched, count: int) -> tuple[bool, ...]:
-    found = searched.search
-    effects = found.fit.effects
-    moved = [effect.target for effect in effects if isinstance(effect, RecordingShift)]
+    found, own = searched.search, searched.changes
+    differ = _differing(searched)
     return tuple(
-        not (any(t.meets(one) for t in moved) and neutral_somewhere(found.problem, effects, one, count))
-        for one in without_shifts(effects)
+        own is None
+        or effect not in differ
+        or not any(is_as_declared(found.problem, own, effect, number) for number in range(count))
+        for effect in without_shifts(found.fit.effects)
     )
+
+
+def _differing(searched: Searched) -> list[Effect]:
+    """Effects of the machine of which a level differs between the recordings."""
+    effects = searched.search.fit.effects
+    moved = [one.target for one in effects if isinstance(one, RecordingShift)]
+    return [one for one in without_shifts(effects) if any(target.meets(one) for target in moved)]
 
 
 def machine_as_last(searched: Searched, listed: Sequence[bool]) -> tuple[Effect, ...]:
     """Effects of the machine as it was in the last recording: those listed, then levels that changed to matter."""
-    found = searched.search
-    machine = without_shifts(found.fit.effects)
+    found, own = searched.search, searched.changes
+    machine, last = without_shifts(found.fit.effects), len(found.problem.evidence) - 1
     first = [effect for effect, named in zip(machine, listed, strict=True) if named]
     rest = [
         effect
         for effect, named in zip(machine, listed, strict=True)
-        if not named and is_material(effect, found.problem.plant)
+        if not named
+        and is_material(effect, found.problem.plant)
+        and not (own is not None and is_none(found.problem, own, effect, last))
     ]
     return (*first, *rest)
 
