@@ -52,7 +52,7 @@ def parameter_changes(problem: Problem, changes: Changes, questions: Sequence[Qu
         found = [
             (target, moved)
             for target in changes.targets
-            for moved in _compared_values(problem, changes.fit, target, q.here, q.there)
+            for moved in _with_phase_of_a_sine(_compared_values(problem, changes.fit, target, q.here, q.there))
         ]
         together = [moved for _, moved in found]
         for target, one in found:
@@ -65,6 +65,13 @@ def parameter_changes(problem: Problem, changes: Changes, questions: Sequence[Qu
                     )
                 )  # fmt: skip
     return tuple(result)
+
+
+def _with_phase_of_a_sine(found: list[Moved]) -> list[Moved]:
+    """The parameters of a target, without a phase where in one of the recordings there is no sine to have one."""
+    sines = [one for one in found if one.key == "amplitude"]
+    there_is_none = any(abs(end.value) <= end.half for one in sines for end in (one.here, one.there))
+    return sines if there_is_none else found
 
 
 def _compared_values(problem: Problem, fitted: Fit, target: Target, here: int, there: int | None) -> list[Moved]:

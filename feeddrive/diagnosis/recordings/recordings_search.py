@@ -4,7 +4,8 @@ A level that is other in one recording looks, to effects held in common, like a 
 and an effect that is not yet found looks, in recordings of other motions, like levels that differ. So both orders are
 followed: differences first, held while the effects are searched; and effects first, the differences asked after them.
 In either the differences are asked again with the effects in, and effects that then no longer pay are dropped. The
-second order is spared where the first leaves no more than noise, or ends with the differences that it held.
+second order is spared where the first leaves no more than noise, or ends with the differences that it held. What one
+recording alone shows is asked of it alone, where more of it is left than of another.
 """
 
 from __future__ import annotations
@@ -12,9 +13,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from feeddrive.diagnosis.calibration.calibrate import recalibrated
 from feeddrive.diagnosis.calibration.value_slopes import with_new_slopes
 from feeddrive.diagnosis.finding.attempt import with_predictable
+from feeddrive.diagnosis.finding.members import member, members_of
 from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.finding.sets import needed_members
 from feeddrive.diagnosis.likelihood.evidence import Evidence
@@ -85,10 +89,35 @@ def search_recordings(
     best = _followed(problem, held if _plausible(held) else _nothing(problem), earlier, progress)
     assert best.changes is not None
     confirmed = _levels_of(problem, best.changes) == (_levels_of(problem, held) if _plausible(held) else set())
-    if confirmed or _explained(best) or problem.budget.skips("effects first, and then what differs"):
+    if not (confirmed or _explained(best) or problem.budget.skips("effects first, and then what differs")):
+        nothing = _nothing(problem)
+        other = nothing if _plausible(held) and held.targets else _levels_alone(problem, best.changes, earlier)
+        best = _better(best, _followed(problem, other, earlier, progress))
+    return _with_effects_of_one(problem, best, progress)
+
+
+def _with_effects_of_one(problem: Problem, best: Searched, progress: Callable[[str], None]) -> Searched:
+    """The search, or one with effects that the recording of which most is left shows by itself, where that is better.
+
+    An effect that one recording alone has is worse than none in the others: asked of all in common it does not pay.
+    """
+    apart = _left_most(best.search)
+    if apart is None or problem.budget.skips("effects of one recording alone"):
         return best
-    other = _nothing(problem) if _plausible(held) and held.targets else _levels_alone(problem, best.changes, earlier)
-    return _better(best, _followed(problem, other, earlier, progress))
+    progress(f"searching {apart.recording.name} alone")
+    found = without_shifts(best.search.fit.effects)
+    alone = search(replace(problem, evidence=(apart,)), progress).fit.effects
+    more = [effect for effect in alone if member(effect) not in members_of(found)]
+    return _better(best, _continued(problem, (*found, *more), progress)) if more else best
+
+
+def _left_most(found: Search) -> Evidence | None:
+    """The recording of which most is left over its noise, where that is more than the level of another is known to."""
+    problem = found.problem.settled(found.fit.effects).plain
+    recordings = problem.by_channel(problem.unwhitened(found.fit.effects))
+    errors = [float(np.mean(np.concatenate([*channels.values()]) ** 2)) for channels in recordings]
+    worst = int(np.argmax(errors))
+    return problem.evidence[worst] if errors[worst] > UNEXPLAINED * max(min(errors), 1.0) else None
 
 
 def _followed(problem: Problem, held: Changes, earlier: Sequence[int], progress: Callable[[str], None]) -> Searched:
