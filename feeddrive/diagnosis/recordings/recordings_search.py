@@ -108,7 +108,10 @@ def _with_effects_of_one(problem: Problem, best: Searched, progress: Callable[[s
     found = without_shifts(best.search.fit.effects)
     alone = search(replace(problem, evidence=(apart,)), progress).fit.effects
     more = [effect for effect in alone if member(effect) not in members_of(found)]
-    return _better(best, _continued(problem, (*found, *more), progress)) if more else best
+    if not more:
+        return best
+    of_last = apart.recording is problem.evidence[-1].recording
+    return _better(best, _continued(problem, (*found, *more), progress, of_last))
 
 
 def _left_most(found: Search) -> Evidence | None:
@@ -133,14 +136,20 @@ def _followed(problem: Problem, held: Changes, earlier: Sequence[int], progress:
     return Searched(replace(found, problem=changes.problem, fit=changes.fit), changes)
 
 
-def _continued(problem: Problem, start: Sequence[Effect], progress: Callable[[str], None]) -> Searched:
+def _continued(
+    problem: Problem, start: Sequence[Effect], progress: Callable[[str], None], of_last: bool = False
+) -> Searched:
     """The effects found earlier, those that still pay; then what else is lacking, and what differs.
 
-    They are those of the machine before: what differs is asked of the last recording, with these values held.
+    They are those of the machine before: what differs is asked of the last recording, with these values held. Where
+    they are those of the machine as it is in the last recording (`of_last`), it is asked of the others.
     """
     progress("asking again for the effects found earlier")
-    last = len(problem.evidence) - 1
-    again = _as_last(find_changes(with_predictable(problem, start), start, [last] if last else []), last)
+    last, predictable = len(problem.evidence) - 1, with_predictable(problem, start)
+    if of_last:
+        again = find_changes(predictable, start, range(last))
+    else:
+        again = _as_last(find_changes(predictable, start, [last] if last else []), last)
     if last > 1 and again.problem.plain_error(again.fit.effects) > UNEXPLAINED:  # those before differ as well
         again = find_changes(again.problem, without_shifts(again.fit.effects), range(last))
     needed = _still_needed(again.problem, again.fit)
