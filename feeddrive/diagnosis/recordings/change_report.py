@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import chdtri
 
+from feeddrive.diagnosis.calibration.known import NORMAL_95
 from feeddrive.diagnosis.calibration.stated import is_within_tolerance
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.materiality import is_material
@@ -24,6 +27,9 @@ from feeddrive.typing import FloatArray
 
 STEP = 1e-6
 """Step of the differences in coordinates of size one."""
+
+TWO_COMPONENTS = math.sqrt(float(chdtri(2, 0.05))) / NORMAL_95
+"""Length that two normal components have with 5 % by chance, over that of one."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +76,7 @@ def parameter_changes(problem: Problem, changes: Changes, questions: Sequence[Qu
 def _with_phase_of_a_sine(found: list[Moved]) -> list[Moved]:
     """The parameters of a target, without a phase where in one of the recordings there is no sine to have one."""
     sines = [one for one in found if one.key == "amplitude"]
-    there_is_none = any(abs(end.value) <= end.half for one in sines for end in (one.here, one.there))
+    there_is_none = any(_holds(end, 0.0, one.key) for one in sines for end in (one.here, one.there))
     return sines if there_is_none else found
 
 
@@ -152,4 +158,9 @@ def is_none(problem: Problem, changes: Changes, effect: Effect, number: int) -> 
         for target in changes.targets
         if target.meets(effect) and keys_of(changes.fit.effects, problem, target)
     ]
-    return bool(sizes) and all(abs(one.here.value - number_of(none.values[one.key])) <= one.here.half for one in sizes)
+    return bool(sizes) and all(_holds(one.here, number_of(none.values[one.key]), one.key) for one in sizes)
+
+
+def _holds(measure: Measure, value: float, key: str) -> bool:
+    """Whether an interval of 95 % holds a value; an amplitude, of two components, is never below none."""
+    return abs(measure.value - value) <= measure.half * (TWO_COMPONENTS if key == "amplitude" else 1.0)

@@ -10,6 +10,7 @@ recording alone shows is asked of it alone, where more of it is left than of ano
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -75,10 +76,11 @@ def search_recordings(
         start: effects found earlier; they are asked again with all recordings before others are searched.
     """
     if start:
-        continued = _continued(numbered(problem), start, progress)
-        kept = {(effect.name, effect.port, effect.place) for effect in continued.search.fit.effects}
-        if _explained(continued) or all((effect.name, effect.port, effect.place) in kept for effect in start):
-            return continued
+        problem = numbered(problem)
+        continued = _continued(problem, start, progress)
+        kept = members_of(continued.search.fit.effects)
+        if _explained(continued) or all(member(effect) in kept for effect in start):
+            return _with_effects_of_one(problem, continued, progress) if len(problem.evidence) > 1 else continued
         return _better(continued, search_recordings(problem, progress))
     if len(problem.evidence) < 2:
         return Searched(normalised(search(problem, progress)), None)
@@ -115,12 +117,17 @@ def _with_effects_of_one(problem: Problem, best: Searched, progress: Callable[[s
 
 
 def _left_most(found: Search) -> Evidence | None:
-    """The recording of which most is left over its noise, where that is more than the level of another is known to."""
+    """The recording of which most is left over its noise, where that is more than the level of another is known to.
+
+    Channels are asked apart: a late torque is of the torque alone.
+    """
     problem = found.problem.settled(found.fit.effects).plain
     recordings = problem.by_channel(problem.unwhitened(found.fit.effects))
-    errors = [float(np.mean(np.concatenate([*channels.values()]) ** 2)) for channels in recordings]
-    worst = int(np.argmax(errors))
-    return problem.evidence[worst] if errors[worst] > UNEXPLAINED * max(min(errors), 1.0) else None
+    squares = [{name: float(np.mean(rows**2)) for name, rows in channels.items()} for channels in recordings]
+    least = {name: max(min(one.get(name, math.inf) for one in squares), 1.0) for one in squares for name in one}
+    over = [max(square / least[name] for name, square in one.items()) for one in squares]
+    worst = int(np.argmax(over))
+    return problem.evidence[worst] if over[worst] > UNEXPLAINED else None
 
 
 def _followed(problem: Problem, held: Changes, earlier: Sequence[int], progress: Callable[[str], None]) -> Searched:
