@@ -16,11 +16,13 @@ from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.recording import Recording
+from feeddrive.recording import Recording, read_recording
 from feeddrive.report.words.verdict import verdict_sentences
 from tests.generator import BENCH, recording_pair
 from tests.generator import effects as planted
 from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
+
+DATA = Path(__file__).parents[1] / "data" / "bench"
 
 
 @pytest.fixture(scope="module")
@@ -85,6 +87,32 @@ def test_a_ripple_of_one_recording_alone_is_a_change_and_the_plant_is_as_it_was_
     assert changed(result) == {("amplitude", "b"): pytest.approx(last - first, rel=0.1)}
     # what is not told from none is not carried
     assert [effect.values["amplitude"] for effect in effects] == ([pytest.approx(last, rel=0.1)] if last else [])
+
+
+def test_a_continued_diagnosis_finds_what_the_last_recording_shows_alone(rigid: Plant) -> None:
+    bump = (6.0, 0.1, 0.02)
+    before = rigid_run("a", Truth(ripple=0.01))
+    after = rigid_run("b", Truth(ripple=0.01, bump=bump, seed=2), slow=1.3)
+    known = TorqueRipple.of(amplitude=0.01, order=3.0, phase=0.0)
+    result, effects = diagnose(rigid, [before, after], start=[known])
+    assert [effect.name for effect in result.effects] == ["torque_ripple"]
+    assert changed(result) == {("peak", "b"): pytest.approx(bump[0], rel=0.1)}
+    assert sorted(effect.name for effect in effects) == ["friction_vs_position", "torque_ripple"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("worn_last", [True, False])
+def test_play_of_one_recording_alone(worn_last: bool) -> None:
+    names = ["null", "backlash"] if worn_last else ["backlash", "null"]
+    recordings = [read_recording(DATA / f"{name}_train.csv.gz") for name in names]
+    result, effects = diagnose(read_plant(plants_folder() / "bench_axis.toml"), recordings)
+    assert [effect.name for effect in result.effects] == []
+    width = 7.5e-6  # as tests/data/bench says
+    assert changed(result) == {
+        ("width", f"{names[1]}_train.csv.gz"): pytest.approx(width if worn_last else -width, rel=0.01)
+    }
+    assert [effect.name for effect in effects] == (["backlash"] if worn_last else [])
+    assert all(channel.after.rms < 1.2 * channel.noise_rms for channel in result.channels)
 
 
 def test_a_judged_recording_with_another_level_is_recognised_and_its_error_stays(rigid: Plant) -> None:
