@@ -10,8 +10,18 @@ from pathlib import Path
 
 import pytest
 
+from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.judging.result import Diagnosis
+from feeddrive.diagnosis.likelihood.coordinates import coordinates_of
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.preparation import prepared
+from feeddrive.diagnosis.recordings.change_report import is_none
+from feeddrive.diagnosis.recordings.changes import Changes
+from feeddrive.diagnosis.recordings.recordings import shift_of, target_of
+from feeddrive.diagnosis.recordings.recordings_search import numbered
+from feeddrive.effects.base import Port
+from feeddrive.effects.friction.friction_vs_position import FrictionVsPosition
 from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.plant_file import read_plant
@@ -90,7 +100,7 @@ def test_a_ripple_of_one_recording_alone_is_a_change_and_the_plant_is_as_it_was_
 
 
 def test_a_continued_diagnosis_finds_what_the_last_recording_shows_alone(rigid: Plant) -> None:
-    bump = (6.0, 0.1, 0.02)
+    bump = (6.0, 0.03, 0.02)
     before = rigid_run("a", Truth(ripple=0.01))
     after = rigid_run("b", Truth(ripple=0.01, bump=bump, seed=2), slow=1.3)
     known = TorqueRipple.of(amplitude=0.01, order=3.0, phase=0.0)
@@ -98,6 +108,21 @@ def test_a_continued_diagnosis_finds_what_the_last_recording_shows_alone(rigid: 
     assert [effect.name for effect in result.effects] == ["torque_ripple"]
     assert changed(result) == {("peak", "b"): pytest.approx(bump[0], rel=0.1)}
     assert sorted(effect.name for effect in effects) == ["friction_vs_position", "torque_ripple"]
+
+
+@pytest.mark.parametrize(
+    ("key", "peak", "none"),
+    [("centre", 6.0, False), ("centre", 1e-3, False), ("peak", 6.0, False), ("peak", 1e-3, True)],
+)
+def test_only_a_size_that_differs_is_none(rigid: Plant, key: str, peak: float, none: bool) -> None:
+    """A newton is seen a hundred times over; a place that differs says nothing of how much is there."""
+    recordings = [rigid_run("a", Truth()), rigid_run("b", Truth(seed=2), slow=1.3)]
+    problem = numbered(calibrated(prepared(rigid, recordings, [], 1.0)[0]))
+    bump = FrictionVsPosition.of(Port.TABLE, peak=peak, centre=0.03, half_width=0.01)
+    keys = [getattr(one, "key", "") for one in coordinates_of(bump, problem.plant)]
+    target = target_of(bump, keys.index(key))
+    differing = Changes(problem, fit(problem, [bump, shift_of(target, 0, 1)], iterations=0), (target,), ())
+    assert is_none(problem, differing, bump, 1) is none
 
 
 @pytest.mark.slow

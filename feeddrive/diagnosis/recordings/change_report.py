@@ -13,7 +13,12 @@ from feeddrive.diagnosis.calibration.known import NORMAL_95
 from feeddrive.diagnosis.calibration.stated import is_within_tolerance
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.materiality import is_material
-from feeddrive.diagnosis.likelihood.coordinates import absent_coordinates, read_coordinates, write_coordinates
+from feeddrive.diagnosis.likelihood.coordinates import (
+    absent_coordinates,
+    coordinates_of,
+    read_coordinates,
+    write_coordinates,
+)
 from feeddrive.diagnosis.likelihood.fit import Fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.recordings.change_candidates import keys_of, material_difference, targeted
@@ -58,7 +63,7 @@ def parameter_changes(problem: Problem, changes: Changes, questions: Sequence[Qu
         found = [
             (target, moved)
             for target in changes.targets
-            for moved in _with_phase_of_a_sine(_compared_values(problem, changes.fit, target, q.here, q.there))
+            for moved in _without_phase_of_none(_compared_values(problem, changes.fit, target, q.here, q.there))
         ]
         together = [moved for _, moved in found]
         for target, one in found:
@@ -73,8 +78,8 @@ def parameter_changes(problem: Problem, changes: Changes, questions: Sequence[Qu
     return tuple(result)
 
 
-def _with_phase_of_a_sine(found: list[Moved]) -> list[Moved]:
-    """The parameters of a target, without a phase where in one of the recordings there is no sine to have one."""
+def _without_phase_of_none(found: list[Moved]) -> list[Moved]:
+    """The parameters of a target; without a phase where there is no sine to have one in one of the recordings."""
     sines = [one for one in found if one.key == "amplitude"]
     there_is_none = any(_holds(end, 0.0, one.key) for one in sines for end in (one.here, one.there))
     return sines if there_is_none else found
@@ -146,19 +151,29 @@ def is_as_declared(problem: Problem, changes: Changes, effect: Effect, number: i
 def is_none(problem: Problem, changes: Changes, effect: Effect, number: int) -> bool:
     """Whether an effect of which a level differs is not told from none in one of the recordings.
 
-    The intervals of all that differs hold none of it. A declared value is never none.
+    The interval of every size that differs holds none of it, and it has no other. A place, an order or another choice
+    of its form is no size. A declared value is never none.
     """
     if is_within_tolerance(effect, problem.plant) is not None:
         return False
     absent, _ = absent_coordinates([effect], problem.plant)
     at = read_coordinates([effect], problem.plant)
     (none,) = write_coordinates([effect], problem.plant, np.where(np.isnan(absent), at, absent))
-    sizes = [
-        _compared_values(problem, changes.fit, target, number, None)[0]  # of a sine that is its amplitude
-        for target in changes.targets
-        if target.meets(effect) and keys_of(changes.fit.effects, problem, target)
-    ]
-    return bool(sizes) and all(_holds(one.here, number_of(none.values[one.key]), one.key) for one in sizes)
+    targets = {target.coordinate: target for target in changes.targets if target.meets(effect)}
+    sizes, first = 0, 0
+    for index, coordinate in enumerate(coordinates_of(effect, problem.plant)):
+        places = slice(first, first + len(coordinate.read(effect)))
+        first = places.stop
+        if np.isnan(absent[places]).any():
+            continue
+        target = targets.get(index)
+        if target is None or not keys_of(changes.fit.effects, problem, target):
+            return False
+        one = _compared_values(problem, changes.fit, target, number, None)[0]  # of a sine that is its amplitude
+        if not _holds(one.here, number_of(none.values[one.key]), one.key):
+            return False
+        sizes += 1
+    return sizes > 0
 
 
 def _holds(measure: Measure, value: float, key: str) -> bool:
