@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.materiality import is_material_here
@@ -57,8 +55,7 @@ def _is_seen(without: Standing, found: Standing) -> bool:
 
 
 def _squares(one: Standing) -> list[dict[str, float]]:
-    """Per recording, channel to the mean square of its error over the noise at the fitted samples."""
+    """Per recording, channel to the mean square of its error over the noise, what rows do not tell included."""
     whole = [replace(e, between_rows=()) if isinstance(e, AxisEvidence) else e for e in one.problem.evidence]
-    problem = replace(one.problem.settled(one.fit.effects), evidence=tuple(whole)).plain
-    recordings = problem.by_channel(problem.unwhitened(one.fit.effects))
-    return [{name: float(np.mean(rows**2)) for name, rows in channels.items()} for channels in recordings]
+    settled = one.problem.settled(one.fit.effects)
+    return replace(settled, evidence=tuple(whole)).plain_squares(one.fit.effects)

@@ -187,6 +187,14 @@ class Problem:
         residual = self.plain.residual(effects)
         return float(residual @ residual) / max(len(residual), 1)
 
+    def plain_squares(self, effects: Sequence[Effect]) -> list[dict[str, float]]:
+        """Per recording, channel to the mean square of its error over its noise, the declared values as they are.
+
+        A channel of which nothing is fitted is left out.
+        """
+        recordings = self.by_channel(self.plain.unwhitened(effects))
+        return [{c: float(np.mean(rows**2)) for c, rows in one.items() if len(rows)} for one in recordings]
+
     def unwhitened(self, effects: Sequence[Effect]) -> FloatArray:
         """Measured less predicted over the noise at the fitted samples of all recordings."""
         plant, parts = self.machine(effects), []

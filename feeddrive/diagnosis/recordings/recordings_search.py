@@ -121,13 +121,11 @@ def _left_most(found: Search) -> Evidence | None:
 
     Channels are asked apart: a late torque is of the torque alone.
     """
-    problem = found.problem.settled(found.fit.effects).plain
-    recordings = problem.by_channel(problem.unwhitened(found.fit.effects))
-    squares = [{name: float(np.mean(rows**2)) for name, rows in channels.items()} for channels in recordings]
+    squares = found.problem.settled(found.fit.effects).plain_squares(found.fit.effects)
     least = {name: max(min(one.get(name, math.inf) for one in squares), 1.0) for one in squares for name in one}
-    over = [max(square / least[name] for name, square in one.items()) for one in squares]
+    over = [max((square / least[name] for name, square in one.items()), default=0.0) for one in squares]
     worst = int(np.argmax(over))
-    return problem.evidence[worst] if over[worst] > UNEXPLAINED else None
+    return found.problem.evidence[worst] if over[worst] > UNEXPLAINED else None
 
 
 def _followed(problem: Problem, held: Changes, earlier: Sequence[int], progress: Callable[[str], None]) -> Searched:
