@@ -19,13 +19,17 @@ from feeddrive.diagnosis.suspicion.fault_alone import alone_explains, faults_alo
 from feeddrive.diagnosis.suspicion.suspects import MOST, Suspect, again, is_better, is_worth_a_search, suspected
 from feeddrive.errors import InputError
 
+ROUNDS = 2
+"""Rounds beside the recordings as they are: a declared value that is off by far is asked where no set is likelier, and
+one that is takes a round before (a table half as heavy was a clock, since a delay of a microsecond came first)."""
+
 
 def fault_alone(
     begun: Begun, begin: Callable[[Files], Begun], settle: Callable[[Begun], Settled], progress: Progress
 ) -> tuple[Begun, Settled] | None:
     """What was found in the recordings as mended of a fault of the recorder that alone leaves noise; None for none.
 
-    Asked before any effect. A round beside the recordings as they are says whether one effect leaves as little.
+    Asked before any effect. Rounds beside the recordings as they are say whether an effect leaves as little.
     """
     problem = begun.calibrated
     if problem is None:
@@ -36,7 +40,7 @@ def fault_alone(
         return None
     best = min(able, key=lambda one: error_within_tolerances(one.problem, fit(one.problem, ()), problem))
     progress("it may be the recorder: asking for an effect that leaves as little")
-    first = search(problem, progress, most_rounds=1)
+    first = search(problem, progress, most_rounds=ROUNDS)
     if not is_worth_a_search(best.fault, best.problem, first):
         return None
     settled = settle(best.begun)

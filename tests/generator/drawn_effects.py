@@ -7,7 +7,7 @@ must be off before it is more than its tolerance.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -427,10 +427,12 @@ TOUCHED = {
 """Effects that say that a declared value is other, and the values."""
 
 
-def is_possible(effect: Effect, machine: Machine) -> bool:
-    """Whether the equations allow the effect: positive friction, masses, stiffness."""
+def are_possible(effects: Sequence[Effect], machine: Machine) -> bool:
+    """Whether the equations allow the effects together: positive friction, masses, stiffness."""
+    c = declared_constants(machine.axis)
     try:
-        c = effect.planted(declared_constants(machine.axis))
+        for effect in effects:
+            c = effect.planted(c)
     except ValueError:
         return False
     parts = (c.coulomb_asymmetry, c.stribeck_force, c.bump_peak)

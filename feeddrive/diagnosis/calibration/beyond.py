@@ -122,7 +122,7 @@ def is_beyond(problem: Problem, rest: Sequence[Effect], effect: Effect) -> bool:
     places = tuple(i for i, value in enumerate(values) if value.name and is_said_by(value, effect))
     coordinates = back.calibration.coordinates.copy()
     for i in places:
-        coordinates[i] = coordinate_said(problem.plant, values[i], effect)
+        coordinates[i] = max(coordinate_said(problem.plant, values[i], effect), -values[i].farthest)
     if not np.all(np.isfinite(coordinates)):
         return False
     there = with_new_slopes(back.at_values(coordinates), rest)

@@ -68,9 +68,13 @@ FIXED = {
 FORM = {"centre", "damping", "start", "break_away"}
 """Linear parameters that choose the form of a law, not its size."""
 
-LAWS_AT_ENDS = {("presliding", "break_away"), ("friction_deviation", "viscous_factor")}
+LAWS_AT_ENDS = {
+    ("presliding", "break_away"),
+    ("friction_deviation", "viscous_factor"),
+    ("friction_deviation", "coulomb_factor"),
+}
 """Shares at whose ends a law is a law as any other: a bristle that gives way little by little, or at once; Coulomb
-friction alone."""
+friction alone, or viscous friction alone."""
 
 FACTORS = {"factor", "coulomb_factor", "viscous_factor", "ratio"}
 """Parameters that are 1 where the effect is absent; other sizes are 0."""

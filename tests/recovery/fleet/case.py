@@ -28,8 +28,8 @@ from tests.generator.drawn_effects import (
     TOLERANCES,
     TOUCHED,
     Drawn,
+    are_possible,
     drawn_effect,
-    is_possible,
     off_factors,
 )
 from tests.generator.effects import Effect
@@ -300,6 +300,8 @@ def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random, decla
     if planted is None:
         return None
     effects = tuple(one.effect for one in planted)
+    if not are_possible(effects, true):
+        return None
     runs = _runs(true, effects, asked, lambda one: not any(from_declared(one, n, floor) < LEAST_TOLD for n in names))
     if runs is None:
         return None
@@ -419,4 +421,4 @@ def _possible(drawn: Drawn, factor: float, machine: Machine) -> Effect | None:
         effect = drawn.effect.scaled(factor)
     except ValueError:
         return None
-    return effect if is_possible(effect, machine) else None
+    return effect if are_possible([effect], machine) else None

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tests.generator.drawn_effects import MAKERS, drawn_effect, is_possible
+from tests.generator.drawn_effects import MAKERS, are_possible, drawn_effect
 from tests.generator.effects import Effect
 from tests.generator.machines import Machine
 from tests.generator.runs import Run, changes
@@ -56,7 +56,7 @@ def told_apart(drawn: Case) -> list[Told]:
         target = whitened(floor, *changes(run, without))
         least, nearest = math.inf, ""
         for rival in rivals(machine, {planted.name for planted in effects}, drawn.seed, run):
-            if not is_possible(rival, machine):
+            if not are_possible([rival], machine):
                 continue
             with_rival = changes(run, (*without, rival))
             column = target - whitened(floor, *with_rival)
