@@ -69,6 +69,7 @@ class Attempt:
         evenly: the comparison with every block over what is left of it.
         starts: how many were tried.
         promised: squared error that one linear step of its start would take, once it is fitted; 0 before.
+        matters: whether it is of a size that matters, or that a channel shows (`too_small`).
     """
 
     name: str
@@ -78,6 +79,7 @@ class Attempt:
     evenly: Comparison
     starts: int = 1
     promised: float = 0.0
+    matters: bool = True
 
     @property
     def pays(self) -> bool:

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.materiality import is_material_here
 from feeddrive.diagnosis.finding.members import rest_of
 from feeddrive.diagnosis.finding.open_map import with_curves_of
 from feeddrive.diagnosis.finding.refitting import at_rest, in_steps_told, refitted, where_friction_brakes
+from feeddrive.diagnosis.finding.too_small import is_seen
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
-from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import LEVEL_KNOWN, Standing
-from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.set_evidence import Standing
 from feeddrive.effects.base import Effect
 
 
@@ -36,26 +34,6 @@ def ended(problem: Problem, found: Fit) -> tuple[tuple[Problem, Fit] | None, Pro
         rest = rest_of(found.effects, small)
         fewer = without_effects(problem, small, rest)
         without = fit(fewer, rest)
-        if not _is_seen(Standing(fewer, without), Standing(problem, found)):
+        if not is_seen(Standing(fewer, without), Standing(problem, found)):
             return None, fewer, without, small
     return opened, problem, found, []
-
-
-def _is_seen(without: Standing, found: Standing) -> bool:
-    """Whether the square left of a channel is lower with a set than without some of it, by more than it is known to.
-
-    What rows do not tell counts here, since the error that is told holds it. Nothing is seen where less than the noise
-    is left without the set: what a recording without noise holds is then a share of what the simulation misses.
-    """
-    for e, before, after in zip(found.problem.evidence, _squares(without), _squares(found), strict=True):
-        for name, square in after.items():
-            if before[name] > LEVEL**2 * e.kept and square < (1 - LEVEL_KNOWN) * before[name]:
-                return True
-    return False
-
-
-def _squares(one: Standing) -> list[dict[str, float]]:
-    """Per recording, channel to the mean square of its error over the noise, what rows do not tell included."""
-    whole = [replace(e, between_rows=()) if isinstance(e, AxisEvidence) else e for e in one.problem.evidence]
-    settled = one.problem.settled(one.fit.effects)
-    return replace(settled, evidence=tuple(whole)).plain_squares(one.fit.effects)

@@ -59,7 +59,8 @@ class Taken(Standing):
 
 def likelier(problem: Problem, found: Fit, now: Round, denied: Container[str]) -> tuple[Taken | None, tuple[Near, ...]]:
     """The likeliest of the sets near one, fitted, None where none is likelier; and what comes near beside it."""
-    here = [attempt for attempt in now.attempts if same_samples(attempt.problem, problem)]
+    tried_here = [attempt for attempt in now.attempts if attempt.matters]
+    here = [attempt for attempt in tried_here if same_samples(attempt.problem, problem)]
     sets = neighbours(problem, found, here, now.count)
     able = [one for one in sets if one.gain > 0]
     at_hand = Standing(problem, found)
@@ -75,7 +76,7 @@ def likelier(problem: Problem, found: Fit, now: Round, denied: Container[str]) -
         tried.append(taken)
         if taken is not None and not one.dropped:
             given[one.added] = taken.odds
-    for attempt in now.attempts:
+    for attempt in tried_here:
         if not same_samples(attempt.problem, problem):  # some samples tell less of it: compared on the others
             there = fit(attempt.problem, found.effects, iterations=0)
             away = neighbours(attempt.problem, there, [attempt], now.count)

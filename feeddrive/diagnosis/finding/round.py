@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from feeddrive.diagnosis.finding.attempt import PROMISE, Attempt, refined, started
 from feeddrive.diagnosis.finding.members import Member, member
 from feeddrive.diagnosis.finding.scene import Candidate, Scene
+from feeddrive.diagnosis.finding.too_small import with_what_matters
 from feeddrive.diagnosis.likelihood.cross_validation import LEAST_GAIN
 from feeddrive.diagnosis.likelihood.fit import Fit
 from feeddrive.diagnosis.likelihood.problem import Problem
@@ -56,7 +57,8 @@ def one_round(
             ready.append(candidate)
     with ThreadPoolExecutor(WORKERS) as pool:
         groups = list(pool.map(begun, ready))
-        attempts = _promising_refined(scene, found, [attempt for group in groups for attempt in group], pool)
+        begun_with = with_what_matters(scene.problem, found, [attempt for group in groups for attempt in group])
+        attempts = _promising_refined(scene, found, begun_with, pool)
     return Round(tuple(_best_per_place(attempts)), max(2, sum(attempt.starts for attempt in attempts)))
 
 
@@ -73,12 +75,12 @@ def _calibrated(problem: Problem, name: str) -> str:
 
 def _promising_refined(scene: Scene, found: Fit, attempts: list[Attempt], pool: ThreadPoolExecutor) -> list[Attempt]:
     """The attempts, the best first, those fitted that promise a fair part of the best."""
-    most = max((_taken(scene, found, attempt) for attempt in attempts), default=0.0)
-    waiting = sorted(attempts, key=lambda attempt: -_promise(scene, found, attempt, most))
+    most = max((_taken(scene, found, attempt) for attempt in attempts if attempt.matters), default=0.0)
+    waiting = sorted(attempts, key=lambda one: (not one.matters, -_promise(scene, found, one, most)))
     done: list[Attempt] = []
     while waiting and not scene.problem.budget.is_spent:
         best = max((attempt.comparison.gain for attempt in done), default=0.0)
-        if _promise(scene, found, waiting[0], most) <= max(PROMISE, FAIR_PART * best):
+        if not waiting[0].matters or _promise(scene, found, waiting[0], most) <= max(PROMISE, FAIR_PART * best):
             break
         now, waiting = waiting[:AT_ONCE], waiting[AT_ONCE:]
         done += [attempt for attempt in pool.map(lambda one: refined(scene, one), now) if attempt is not None]

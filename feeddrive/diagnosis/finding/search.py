@@ -8,7 +8,7 @@ all effects together, and the likeliest of them is taken if what it adds also lo
 from __future__ import annotations
 
 from collections.abc import Callable, Container
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -56,6 +56,7 @@ from feeddrive.diagnosis.finding.simpler_law import (
     without_resonance,
 )
 from feeddrive.diagnosis.finding.spring_law import soft_everywhere
+from feeddrive.diagnosis.finding.too_small import too_small
 from feeddrive.diagnosis.finding.two_at_once import two_at_once
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
@@ -253,10 +254,16 @@ def search(
 def _asked(
     problem: Problem, found: Fit, impossible: dict[str, str], denied: dict[str, str], number: int
 ) -> _Asked:  # fmt: skip
-    """What may be added to a set or take its place, asked in one round."""
+    """What may be added to a set or take its place, asked in one round; what is too small to matter is denied."""
     now = one_round(scene_of(problem, found.effects), found, impossible, denied, number)
-    taken, near = likelier(problem, found, now, denied)
-    taken = with_values_moved(problem, found, now, taken, denied)
+    while True:
+        taken, near = likelier(problem, found, now, denied)
+        taken = with_values_moved(problem, found, now, taken, denied)
+        small = {one.name for one in too_small(Standing(problem, found), taken)} if taken is not None else set()
+        if not small:
+            break
+        denied |= dict.fromkeys(small, SMALL)
+        now = replace(now, attempts=tuple(one for one in now.attempts if one.name not in small))
     if taken is None and Backlash.name not in denied:
         taken = with_play(problem, found, now.count)
     return _Asked(now, of_likelier_law(taken, now.count, denied), near)

@@ -12,7 +12,7 @@ from feeddrive.effects.base import Port
 
 Need = Callable[[Scene], str]
 
-LEAST_TURNS = 2.0
+LEAST_TURNS = 1.0
 """Revolutions that must be travelled before a periodic effect can be distinguished from a trend."""
 
 LEAST_STROKE_TURNS = 1.0

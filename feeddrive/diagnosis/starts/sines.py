@@ -69,13 +69,13 @@ def strongest_orders(
         tapered: whether bins weigh less towards the ends of the travel; else every bin that was met weighs alike.
 
     Returns:
-        Orders, the strongest first; empty if the angle covers less than two revolutions.
+        Orders, the strongest first; empty if the angle covers less than a revolution.
     """
     bins = np.floor(angle * BINS_PER_TURN / (2 * np.pi)).astype(int)
     bins -= bins.min()
     size = int(bins.max()) + 1
     turns = size / BINS_PER_TURN
-    if turns < 2:
+    if turns < 1:
         return []
     samples = np.bincount(bins, minlength=size)
     mean = np.bincount(bins, weights=residual, minlength=size) / np.maximum(samples, 1)
