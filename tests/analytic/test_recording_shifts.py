@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -90,6 +91,8 @@ def test_play_and_length_are_read() -> None:
     assert "wear" in change_reading(play, [play])
     told = change_statement(play, "b", "a")
     assert told == "free play grew from 4 to 9 µm (± 0.1 µm): a, then b"
+    none = replace(play, there=Measure(3e-10, 1e-9))
+    assert change_statement(none, "b", "a").startswith("free play grew from 0 to 9 µm")
     growth = Moved(
         "lead_error_cumulative",
         Port.TRANSMISSION,

@@ -36,6 +36,10 @@ cell: the cells leave some hundredths. What declared values do as well is whiten
 enough for a prediction shows nothing but cells in what is left of it. With free play it is the move of the median row:
 a table that bounces goes elsewhere however short the step, and of its rows the slope tells nothing."""
 
+FAR = 4.0
+"""Times that move beyond which a step beside a free play is taken again, shorter: the longest comes first, which most
+coordinates need, each being of nanometres."""
+
 
 def difference_of(problem: Problem) -> float:
     """Step of the differences in coordinates of size one."""
@@ -58,21 +62,23 @@ def jacobian_of(problem: Problem, effects: Sequence[Effect], free: Sequence[bool
     _, high = coordinate_ends(moved, problem.plant)
     bounces = has_play(effects) and any(e.lost is not None for e in problem.evidence)
     longest = longest_steps(moved, problem.plant)
-    short = COARSE if bounces else difference_of(problem)
-    coarse = short == COARSE
+    short = difference_of(problem)
 
     def change(to: FloatArray) -> FloatArray:
         return problem.predicted(placed(effects, free, write_coordinates(moved, problem.plant, to))) - base
 
     columns = []
     for i in range(len(vector)):
-        step = np.zeros(len(vector))
-        step[i] = short if vector[i] + short <= high[i] else -short
+        step, first = np.zeros(len(vector)), max(longest[i], COARSE) if bounces else short
+        step[i] = first if vector[i] + first <= high[i] else -first
         moves = change(vector + step)
         size = float(np.median(np.abs(moves)) if bounces else np.linalg.norm(moves))
-        if coarse and size < SEEN:
-            far = min(longest[i], short * SEEN / max(size, 1e-3 * SEEN))
-            step[i] = far if vector[i] + far <= high[i] else -far
+        if bounces:
+            again = max(first * SEEN / size, COARSE) if size > FAR * SEEN else first
+        else:
+            again = min(longest[i], first * SEEN / max(size, 1e-3 * SEEN)) if first == COARSE and size < SEEN else first
+        if again != first:
+            step[i] = again if vector[i] + again <= high[i] else -again
             moves = change(vector + step)
         columns.append(moves / step[i])
     return np.column_stack(columns) if columns else np.zeros((len(base), 0))

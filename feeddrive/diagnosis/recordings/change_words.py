@@ -87,7 +87,7 @@ def change_statement(moved: Moved, recording: str, against: str) -> str:
         return f"{subject} {percent} {way} {places}"
     if (moved.effect, moved.key) in SIZES:
         grown = "grew" if moved.by > 0 else "shrank"
-        values = from_to(moved.there.value, moved.here.value, moved.unit)
+        values = from_to(_told(moved.there), _told(moved.here), moved.unit)
         spread = _short(moved.difference.half, moved.unit)
         return f"{SIZES[moved.effect, moved.key]} {grown} {values} (± {spread}): {against}, then {recording}"
     size, spread = _short(abs(moved.by), moved.unit), _short(moved.difference.half, moved.unit)
@@ -102,6 +102,11 @@ def from_to(first: float, last: float, unit: str) -> str:
     factor, _, label = shown_unit(small if small > 1e-4 * large else large, unit)
     a, b = (f"{value * factor:.4g}" for value in (first, last))
     return f"from {a} to {b} {label}".rstrip()
+
+
+def _told(size: Measure) -> float:
+    """A size; none where it is not told from none."""
+    return size.value if abs(size.value) > size.half else 0.0
 
 
 def _short(value: float, unit: str) -> str:
