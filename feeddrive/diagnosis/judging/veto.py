@@ -64,7 +64,8 @@ from feeddrive.errors import InputError
 from feeddrive.units.quantity import percent
 
 CLEARLY_NEEDED = 0.1
-"""Share of the squared error that an effect must bring, by one linear step, not to be refitted without it."""
+"""Share of the squared error on judged data from which an effect is clearly needed: by one linear step, it is not
+refitted without it, and no interval of a slope denies it."""
 
 
 @dataclass(frozen=True)
@@ -161,13 +162,14 @@ def _first_denied(found: Search, judged: Sequence[Judged], spared: Collection[st
     pushing = friction_that_pushes(problem, effects)
     reasons = [at_end[i] or idle[i] or around_none[i] or as_declared[i] or pushing[i] for i in named]
     gains = [share.comparison.gain for share in shares]
-    denied = [
-        _instead(found, i, gains)
-        if shares[i].carries and around_none[i] and not at_end[i]
+    asked = [
+        _instead(found, i, gains, _is_clear(shares[i].comparison))
+        if shares[i].carries and reason == around_none[i]
         else Denied(i, gains[i], reason)
         for i, reason in enumerate(reasons)
         if reason and not _differs(effects, i)
     ]
+    denied = [one for one in asked if one is not None]
     if worst and not denied:
         place = min(named, key=lambda i: shares[i].explains[worst])
         reason = f"with it {worst} is predicted worse than as declared on data not fitted, by more than its scatter"
@@ -186,11 +188,13 @@ def _brings_more(found: Search, other: JudgedChanges, name: str) -> bool:
     return worse_by(other.problem, other.allowed, name, than_after=True) > 0
 
 
-def _instead(found: Search, place: int, gains: Sequence[float]) -> Denied:
+def _instead(found: Search, place: int, gains: Sequence[float], clear: bool) -> Denied | None:
     """What goes for an effect that carries while its interval holds none: itself, or what makes that interval so wide.
 
     Of two that say the same either may go, and beside neither is the other told from none. That goes which data not
-    fitted miss less.
+    fitted miss less. Where no other does, nothing goes if they are clear about it: bristles whose stiffness was known
+    to a factor of three, beside widths of sign changes, took two thirds of the squared error, and a slope said that a
+    stiffness without end lies within its interval.
     """
     effects = found.fit.effects
     less = [i for i in range(len(gains)) if gains[i] < gains[place] and not _differs(effects, i)]
@@ -200,7 +204,11 @@ def _instead(found: Search, place: int, gains: Sequence[float]) -> Denied:
         if not sizes_around_none(wide, fit(wide, rest, iterations=ITERATIONS))[place - (other < place)]:
             words = f"beside it {effects[place].name} is not told from none, which lowers the error more"
             return Denied(other, gains[other], words)
-    return Denied(place, gains[place], AROUND_NONE)
+    return None if clear else Denied(place, gains[place], AROUND_NONE)
+
+
+def _is_clear(comparison: Comparison) -> bool:
+    return comparison.gain > max(CLEARLY_NEEDED, SURE * comparison.standard_error)
 
 
 def _share(found: Search, judged: Sequence[Judged], place: int) -> Share:
@@ -224,8 +232,7 @@ def _share(found: Search, judged: Sequence[Judged], place: int) -> Share:
         share = share_beyond(problem, judged, moved)
     except InputError:  # one step may lead to a plant that cannot be simulated
         return share_of(problem, judged, effects, place)
-    clear = share.comparison.gain > max(CLEARLY_NEEDED, SURE * share.comparison.standard_error)
-    return share if clear else share_of(problem, judged, effects, place)
+    return share if _is_clear(share.comparison) else share_of(problem, judged, effects, place)
 
 
 def _without_lost_shifts(effects: Sequence[Effect]) -> tuple[Effect, ...]:
