@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated
+from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.suspicion.quality import Quality
@@ -26,6 +27,7 @@ class Begun:
         notes: remarks about them.
         quality: what was mended of them.
         calibrated: the problem with its declared values fitted beside no effect, where that was asked for.
+        searched: a search of that, where one was already made to its end.
     """
 
     files: Files
@@ -34,6 +36,7 @@ class Begun:
     notes: tuple[str, ...]
     quality: tuple[Quality, ...]
     calibrated: Problem | None = None
+    searched: Search | None = None
 
     def ready(self) -> Begun:
         """The recordings with the declared values calibrated; as they are where what differs in several goes first."""

@@ -117,8 +117,8 @@ def diagnose(
     find = partial(settle, simulate=in_the_loop, progress=progress, start=start)
     begun = begin((recordings, validation), declared, measured)
     begun = begun if start else begun.ready()  # what was found earlier stands beside the declared values
-    alone = fault_alone(begun, lambda files: begin(files, declared, measured), find, progress)
-    begun, settled = alone or (begun, find(begun))
+    begun, alone = fault_alone(begun, lambda files: begin(files, declared, measured), find, progress)
+    settled = alone or find(begun)
     hold = declared
     if hold is None and may_be_logged(every):
         found = settled.searched.search
@@ -221,11 +221,11 @@ def _without_wrong_numbers(
     """What was found without measured numbers that are wrong, and these."""
 
     def again_with(problem: Problem) -> Settled:
-        return find(replace(begun, problem=problem, calibrated=None))
+        return find(replace(begun, problem=problem, calibrated=None, searched=None))
 
     problem, settled, wrong = without_wrong(begun.problem, settled, lambda one: one.searched.search, again_with)
     notes = tuple(sentence(one, settled.searched.search) for one in wrong)
-    return replace(begun, problem=problem, calibrated=None, notes=(*begun.notes, *notes)), settled, wrong
+    return replace(begun, problem=problem, calibrated=None, searched=None, notes=(*begun.notes, *notes)), settled, wrong
 
 
 def _notes(fitted: Sequence[Evidence], judged: Sequence[Evidence], found: Search) -> tuple[str, ...]:

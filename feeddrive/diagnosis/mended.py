@@ -26,25 +26,30 @@ one that is takes a round before (a table half as heavy was a clock, since a del
 
 def fault_alone(
     begun: Begun, begin: Callable[[Files], Begun], settle: Callable[[Begun], Settled], progress: Progress
-) -> tuple[Begun, Settled] | None:
-    """What was found in the recordings as mended of a fault of the recorder that alone leaves noise; None for none.
+) -> tuple[Begun, Settled | None]:
+    """What was found in the recordings as mended of a fault of the recorder that alone leaves noise.
 
     Asked before any effect. Rounds beside the recordings as they are say whether an effect leaves as little.
+
+    Returns:
+        The recordings as mended, and what was found in them. As they are and None where no fault is alone, with the
+        rounds where these came to the end of a search.
     """
     problem = begun.calibrated
     if problem is None:
-        return None
+        return begun, None
     mended = [_mended(begun, fault, begin) for fault in faults_alone(problem)]
     able = [one for one in mended if one is not None and alone_explains(one.problem, problem)]
     if not able or problem.budget.skips("whether it is the recorder alone"):
-        return None
+        return begun, None
     best = min(able, key=lambda one: error_within_tolerances(one.problem, fit(one.problem, ()), problem))
     progress("it may be the recorder: asking for an effect that leaves as little")
     first = search(problem, progress, most_rounds=ROUNDS)
+    as_it_is = replace(begun, searched=first if first.whole and len(problem.evidence) == 1 else None)
     if not is_worth_a_search(best.fault, best.problem, first):
-        return None
+        return as_it_is, None
     settled = settle(best.begun)
-    return (best.reported(), settled) if is_better(best.fault, settled.searched.search, first) else None
+    return (best.reported(), settled) if is_better(best.fault, settled.searched.search, first) else (as_it_is, None)
 
 
 def without_fault(

@@ -55,7 +55,8 @@ def settle(begun: Begun, simulate: bool, progress: Progress, start: Sequence[Eff
         progress: called with a line that says what is going on.
         start: effects found earlier.
     """
-    searched, evidence = search_recordings(begun.calibrated or begun.problem, progress, start), begun.judged
+    problem, evidence = begun.calibrated or begun.problem, begun.judged
+    searched = search_recordings(problem, progress, start, begun.searched)
     budget = begun.problem.budget
     budget.end_of_search()
     found = searched.search

@@ -97,6 +97,7 @@ class Search:
         asked: what was asked of the judged recordings beside it and beside sets made of it (`recordings.compared`).
         denied: names that were met and are not reported, to why; a search that goes on from this one asks for none.
         weighed: fits, of it and of sets made of it, whose members were weighed with values at rest, and the members.
+        whole: whether no set near the last one was likelier, or had been met; else rounds or time were at their end.
     """
 
     problem: Problem
@@ -111,6 +112,7 @@ class Search:
     asked: list[Any] = field(default_factory=list, compare=False)
     denied: dict[str, str] = field(default_factory=dict)
     weighed: list[tuple[Fit, Any]] = field(default_factory=list, compare=False)
+    whole: bool = True
 
     @property
     def reasons(self) -> dict[str, str]:
@@ -162,6 +164,7 @@ def search(
     near: tuple[Near, ...] = ()
     tried = start.tried if start is not None else 0
     problem, found = balanced(problem, found)
+    whole = True
     while len(rounds) < most_rounds and not (rounds and problem.budget.skips("further rounds of the search")):
         number = len(rounds) + 1
         progress(f"round {number}: {len(found.effects)} effects so far")
@@ -245,10 +248,14 @@ def search(
                 break
             problem, found = in_steps_told(*after)
             met.add(members_of(found.effects))
+    else:
+        whole = False
     opened, problem, found, small = ended(problem, found)
     denied |= dict.fromkeys((one.name for one in small), SMALL)
     found = with_usual_sizes(problem, found)
-    return Search(problem, found, tuple(trials), tuple(rounds), impossible, near, begun, tried, opened, denied=denied)
+    return Search(
+        problem, found, tuple(trials), tuple(rounds), impossible, near, begun, tried, opened, denied=denied, whole=whole
+    )
 
 
 def _asked(

@@ -66,7 +66,10 @@ class Searched:
 
 
 def search_recordings(
-    problem: Problem, progress: Callable[[str], None] = lambda text: None, start: Sequence[Effect] = ()
+    problem: Problem,
+    progress: Callable[[str], None] = lambda text: None,
+    start: Sequence[Effect] = (),
+    done: Search | None = None,
 ) -> Searched:
     """Find the effects that the plant lacks, and the parameters that differ between the recordings.
 
@@ -74,6 +77,7 @@ def search_recordings(
         problem: declared plant and recordings; the last one is the machine as it is now.
         progress: called with a line that says what is going on.
         start: effects found earlier; they are asked again with all recordings before others are searched.
+        done: a search of one recording, without such effects, that was made to its end.
     """
     if start:
         problem = numbered(problem)
@@ -83,7 +87,7 @@ def search_recordings(
             return _with_effects_of_one(problem, continued, progress) if len(problem.evidence) > 1 else continued
         return _better(continued, search_recordings(problem, progress))
     if len(problem.evidence) < 2:
-        return Searched(normalised(search(problem, progress)), None)
+        return Searched(normalised(done or search(problem, progress)), None)
     problem = numbered(problem)
     earlier = range(len(problem.evidence) - 1)
     progress("comparing the recordings")
