@@ -118,3 +118,15 @@ def test_gaps_do_not_hide_an_order_behind_orders_of_their_own() -> None:
     residual = np.sin(5.3 * angle + 0.2)[there] + 2.0
     orders = strongest_orders(angle[there], residual, count=1)
     assert orders == [pytest.approx(5.3, abs=0.01)]
+
+
+@pytest.mark.parametrize("order", [3.0, 8.0])
+def test_several_periods_in_little_more_than_a_revolution_are_found(order: float) -> None:
+    """A milling programme of 1.1 revolutions: an order of three has few periods there, one of eight many."""
+    angle = 2 * np.pi * 1.1 * (0.5 - 0.5 * np.cos(2 * np.pi * STEP * np.arange(9000) / 2.0))
+    residual = 0.5 * np.sin(order * angle + 0.7) + 0.3 * np.random.default_rng(7).standard_normal(len(angle))
+    found = strongest_sines(angle, residual, np.gradient(angle, STEP), EDGE)
+    nearest = min(found, key=lambda one: abs(one.order - order))
+    assert nearest.order == pytest.approx(order, abs=1 / (8 * 1.1))  # an eighth of what they resolve
+    assert nearest.amplitude == pytest.approx(0.5, rel=0.15)
+    assert strongest_orders(angle / 1.2, residual) == []  # less than a revolution

@@ -17,7 +17,7 @@ from feeddrive.diagnosis.finding.attempt import refuse_at_an_end
 from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.judging import judge as judge_of
 from feeddrive.diagnosis.judging import veto
-from feeddrive.diagnosis.judging.asked_of_fit import ends_reached
+from feeddrive.diagnosis.judging.asked_of_fit import AROUND_NONE, ends_reached
 from feeddrive.diagnosis.judging.denied_again import settled_names
 from feeddrive.diagnosis.judging.judge import Judged, Share, prepared_for_judging, share_of
 from feeddrive.diagnosis.judging.veto import not_worse_than_declared, without_denied, worse_by
@@ -36,8 +36,9 @@ from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.errors import InputError
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.recording import Recording
+from feeddrive.recording import Recording, read_recording
 from tests.recovery import trend_machine as machine
+from tests.recovery.fleet.case import case
 from tests.recovery.rigid_runs import COULOMB, LEAD, MASS, NOISE, PLANT, SMOOTH, STEP, VISCOUS, Truth, rigid_run
 
 RIPPLE, BOGUS = (
@@ -339,3 +340,22 @@ def test_no_name_goes_for_what_fitted_values_do(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(veto, "not_worse_than_declared", lambda found, judged, judge: (found, judged))
     gone, _ = without_denied(found, judged, judge)
     assert gone.fit.effects == () and "motor_torque" in gone.denied["lead_error_cumulative"]
+
+
+def test_an_interval_does_not_deny_what_judged_data_are_clear_about(
+    rigid: Plant, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Slopes said that a stiffness of bristles without end lies within its interval; they took 63 % of the error."""
+    monkeypatch.setattr(veto, "sizes_around_none", lambda problem, fitted: [AROUND_NONE] * len(fitted.effects))
+    found, _ = kept_of(rigid, Truth(ripple=0.01), RIPPLE)
+    assert [one.name for one in found.fit.effects] == ["torque_ripple"]
+    found, _ = kept_of(rigid, Truth(), RIPPLE)  # which is not there
+    assert found.fit.effects == ()
+
+
+@pytest.mark.slow
+def test_bristles_known_to_a_factor_of_three_are_named(tmp_path: Path) -> None:
+    """A curve of Dahl with the exponent two, rows of 4 ms: four times the floor of the torque was left."""
+    plant, recording, judged = case(10069).write(tmp_path)
+    result, _ = diagnose(read_plant(plant), [read_recording(recording)], [read_recording(judged)])
+    assert [one.name for one in result.effects] == ["presliding"]

@@ -9,13 +9,17 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis import mended
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.preparation import prepared
+from feeddrive.diagnosis.recordings import recordings_search
 from feeddrive.diagnosis.suspicion import suspects
 from feeddrive.diagnosis.suspicion.fault_alone import faults_alone
 from feeddrive.diagnosis.suspicion.suspects import CLOCK, Suspect
@@ -119,6 +123,31 @@ def test_a_payload_is_named_where_a_clock_would_take_as_much(rigid: Plant) -> No
     result, _ = diagnose(rigid, [one], [other])
     assert [effect.name for effect in result.effects] == ["payload"]
     assert result.quality == ()
+
+
+def test_rounds_that_came_to_the_end_of_a_search_are_not_made_again(
+    rigid: Plant, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    one, other = runs(131, Truth(mass=20.0))
+    asked = []
+
+    def counted(*arguments: Any, **options: Any) -> Search:
+        asked.append(options)
+        return search(*arguments, **options)
+
+    for where in (mended, recordings_search):
+        monkeypatch.setattr(where, "search", counted)
+    diagnose(rigid, [one], [other])
+    assert asked == [{"most_rounds": mended.ROUNDS}]
+
+
+@pytest.mark.slow
+def test_a_table_half_as_heavy_is_no_clock(tmp_path: Path) -> None:
+    """Beside a delay of a microsecond, which came first, a clock of 10 % left as little, and a Stribeck drop."""
+    plant, recording, judge = case(702949).write(tmp_path)
+    result, _ = diagnose(read_plant(plant), [read_recording(recording)], [read_recording(judge)])
+    assert [effect.name for effect in result.effects] == ["payload"]
+    assert not [one for one in result.quality if one.kind == "clock_rate"]
 
 
 def test_a_fault_that_no_recorder_has_is_none() -> None:

@@ -19,6 +19,7 @@ from feeddrive.diagnosis.finding.refitting import with_value_back, with_value_fr
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import members_weighed
 from feeddrive.diagnosis.judging.asked_of_fit import values_within_tolerance
+from feeddrive.diagnosis.likelihood.coordinates import at_an_end
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
@@ -127,3 +128,13 @@ def test_a_value_at_its_farthest_can_be_said_by_an_effect(away: float) -> None:
         if value.name:
             effect = as_effect(plant, value, away)
             assert said_share(plant, value, effect)[1] == pytest.approx(20.0 if away > 0 else 0.05)
+
+
+def test_a_friction_that_is_none_is_beyond_its_tolerance(tmp_path: Path) -> None:
+    """No logarithm says by how many deviations; it was taken for as declared, and its end for no estimate."""
+    problem = calibrated(begun(tmp_path, Truth(coulomb=0.0)))
+    none = FrictionDeviation.of(Port.TABLE, coulomb_factor=0.0, viscous_factor=1.0)
+    there, effects = said_by_effects(problem, [none])
+    assert is_beyond(there, [], none)
+    assert with_value_back(there, fit(there, effects)) is None
+    assert not at_an_end(none, problem.plant)

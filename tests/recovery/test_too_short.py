@@ -28,15 +28,20 @@ ONE_WAY = ((0.25, 0.06),)
 MOVING = (0.02, 4.15)
 """From its beginning to where it stops; a servo that stops turns back by an encoder step or two [s]."""
 
-WITHIN_TWO_TURNS = (7.2, 10.6)
-"""Slow motion to and fro over 1.3 revolutions [s]."""
+WITHIN_A_TURN = ((0.012, 0.02), (-0.012, 0.02)) * 4
+"""Strokes to and fro over 0.6 revolutions: distance [m] and speed [m/s]."""
 
 
 def one_way(*effects: Planted) -> Recording:
     """A stroke without reversal, recorded."""
-    profile = Profile(0.05, ONE_WAY, (), 0.0, 1.0, 0.6, 0.0, 2.0)
+    return recorded("one_way", ONE_WAY, *effects).between(*MOVING)
+
+
+def recorded(name: str, strokes: tuple[tuple[float, float], ...], *effects: Planted) -> Recording:
+    """Strokes alone."""
+    profile = Profile(0.05, strokes, (), 0.0, 1.0, 0.6, 0.0, 2.0)
     channels = simulate(BENCH, PlantedEffects(effects), profile, 11)
-    return Recording("one_way", channels.pop("time"), channels, BENCH.sample_time).between(*MOVING)
+    return Recording(name, channels.pop("time"), channels, BENCH.sample_time)
 
 
 def diagnosed(fitted: Recording) -> Diagnosis:
@@ -68,10 +73,10 @@ def test_a_tight_place_is_found_in_one_direction() -> None:
     assert number(found[0].values["centre"]) == pytest.approx(bump.centre, abs=0.005)
 
 
-def test_less_than_two_turns_shows_no_periodic_effect() -> None:
-    refused = reasons(diagnosed(pair("bench", "null")[0].between(*WITHIN_TWO_TURNS)))
+def test_less_than_a_turn_shows_no_periodic_effect() -> None:
+    refused = reasons(diagnosed(recorded("short", WITHIN_A_TURN)))
     for name in NEEDS_TURNS:
-        assert "revolutions; it needs 2" in refused[name]
+        assert "revolutions; it needs 1" in refused[name]
 
 
 def test_shorter_than_the_cut_ends_is_refused_as_input() -> None:
