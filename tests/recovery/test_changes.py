@@ -111,12 +111,30 @@ def test_a_continued_diagnosis_finds_what_the_last_recording_shows_alone(rigid: 
 
 
 @pytest.mark.parametrize(
+    ("first", "last"),
+    [
+        (Truth(ripple=0.01), Truth(bump=(15.0, 0.03, 0.01), seed=2)),
+        pytest.param(Truth(bump=(15.0, 0.03, 0.01)), Truth(ripple=0.01, seed=2), marks=pytest.mark.slow),
+    ],
+)
+def test_two_recordings_with_an_effect_each(rigid: Plant, first: Truth, last: Truth) -> None:
+    result, effects = diagnose(rigid, [rigid_run("a", first), rigid_run("b", last, slow=1.3)])
+    assert [effect.name for effect in result.effects] == []
+    assert changed(result) == {
+        ("amplitude", "b"): pytest.approx(last.ripple - first.ripple, rel=0.1),
+        ("peak", "b"): pytest.approx(last.bump[0] - first.bump[0], rel=0.1),
+    }
+    assert [effect.name for effect in effects] == ["torque_ripple" if last.ripple else "friction_vs_position"]
+
+
+@pytest.mark.parametrize(
     ("key", "peak", "none"),
     [("centre", 6.0, False), ("centre", 1e-3, False), ("peak", 6.0, False), ("peak", 1e-3, True)],
 )
 def test_only_a_size_that_differs_is_none(rigid: Plant, key: str, peak: float, none: bool) -> None:
     """A newton is seen a hundred times over; a place that differs says nothing of how much is there."""
-    recordings = [rigid_run("a", Truth()), rigid_run("b", Truth(seed=2), slow=1.3)]
+    there = (peak, 0.03, 0.01)
+    recordings = [rigid_run("a", Truth(bump=there)), rigid_run("b", Truth(bump=there, seed=2), slow=1.3)]
     problem = numbered(calibrated(prepared(rigid, recordings, [], 1.0)[0]))
     bump = FrictionVsPosition.of(Port.TABLE, peak=peak, centre=0.03, half_width=0.01)
     keys = [getattr(one, "key", "") for one in coordinates_of(bump, problem.plant)]

@@ -27,8 +27,8 @@ from feeddrive.errors import InputError
 
 FITTED = 2
 """Sets one move away that are fitted in a round, and one two moves away where slopes say that it is likelier: starts
-are near by design, so that slopes put the likeliest among the first, and one that by slopes is no fair part as likely as
-one that was fitted is not (`FAIR_PART`)."""
+are near by design, so that slopes put the likeliest among the first. One that they put at no fair part of another that
+was fitted is not (`FAIR_PART`)."""
 
 ASKED = 3 * FITTED
 """As many where an encoder does not tell the motion: what its steps give is asked of a fitted set alone, and a set that

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import chdtri
 
-from feeddrive.diagnosis.calibration.known import NORMAL_95
 from feeddrive.diagnosis.calibration.stated import is_within_tolerance
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.materiality import is_material
@@ -32,9 +29,6 @@ from feeddrive.typing import FloatArray
 
 STEP = 1e-6
 """Step of the differences in coordinates of size one."""
-
-TWO_COMPONENTS = math.sqrt(float(chdtri(2, 0.05))) / NORMAL_95
-"""Length that two normal components have with 5 % by chance, over that of one."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +75,7 @@ def parameter_changes(problem: Problem, changes: Changes, questions: Sequence[Qu
 def _without_phase_of_none(found: list[Moved]) -> list[Moved]:
     """The parameters of a target; without a phase where there is no sine to have one in one of the recordings."""
     sines = [one for one in found if one.key == "amplitude"]
-    there_is_none = any(_holds(end, 0.0, one.key) for one in sines for end in (one.here, one.there))
+    there_is_none = not all(one.is_told(end) for one in sines for end in (one.here, one.there))
     return sines if there_is_none else found
 
 
@@ -151,7 +145,7 @@ def is_as_declared(problem: Problem, changes: Changes, effect: Effect, number: i
 def is_none(problem: Problem, changes: Changes, effect: Effect, number: int) -> bool:
     """Whether an effect of which a level differs is not told from none in one of the recordings.
 
-    The interval of every size that differs holds none of it, and it has no other. A place, an order or another choice
+    No size that differs is `SURE` deviations from none, and it has no other. A place, an order or another choice
     of its form is no size. A declared value is never none.
     """
     if is_within_tolerance(effect, problem.plant) is not None:
@@ -170,12 +164,7 @@ def is_none(problem: Problem, changes: Changes, effect: Effect, number: int) -> 
         if target is None or not keys_of(changes.fit.effects, problem, target):
             return False
         one = _compared_values(problem, changes.fit, target, number, None)[0]  # of a sine that is its amplitude
-        if not _holds(one.here, number_of(none.values[one.key]), one.key):
+        if one.is_told(one.here, number_of(none.values[one.key])):
             return False
         sizes += 1
     return sizes > 0
-
-
-def _holds(measure: Measure, value: float, key: str) -> bool:
-    """Whether an interval of 95 % holds a value; an amplitude, of two components, is never below none."""
-    return abs(measure.value - value) <= measure.half * (TWO_COMPONENTS if key == "amplitude" else 1.0)

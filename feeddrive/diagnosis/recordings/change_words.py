@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from scipy.special import chdtri
+
+from feeddrive.diagnosis.calibration.known import NORMAL_95
+from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.recordings.change_result import Measure
 from feeddrive.effects.base import Port
 from feeddrive.units.quantity import format_quantity, shown_unit
+
+ONE_COMPONENT = SURE / NORMAL_95
+"""Deviations from none from which a size is told, over those of an interval: those of a value beyond its tolerance."""
+
+TWO_COMPONENTS = math.sqrt(float(chdtri(2, math.erfc(SURE / math.sqrt(2))))) / NORMAL_95
+"""Length that two normal components have as seldom by chance, over that interval."""
 
 EXPANSION = 11.7e-6
 """Expansion of steel [1/K], by which a change of lead is read as a temperature."""
@@ -75,6 +86,10 @@ class Moved:
         """Whether the interval of the difference leaves zero out."""
         return abs(self.by) > self.difference.half
 
+    def is_told(self, value: Measure, none: float = 0.0) -> bool:
+        """Whether one of its values is `SURE` deviations from none; an amplitude, of two components, never is below."""
+        return abs(value.value - none) > value.half * (TWO_COMPONENTS if self.key == "amplitude" else ONE_COMPONENT)
+
 
 def change_statement(moved: Moved, recording: str, against: str) -> str:
     """The change in one sentence."""
@@ -87,12 +102,13 @@ def change_statement(moved: Moved, recording: str, against: str) -> str:
         return f"{subject} {percent} {way} {places}"
     if (moved.effect, moved.key) in SIZES:
         grown = "grew" if moved.by > 0 else "shrank"
-        values = from_to(_told(moved.there), _told(moved.here), moved.unit)
+        values = from_to(_told(moved, moved.there), _told(moved, moved.here), moved.unit)
         spread = _short(moved.difference.half, moved.unit)
         return f"{SIZES[moved.effect, moved.key]} {grown} {values} (± {spread}): {against}, then {recording}"
     size, spread = _short(abs(moved.by), moved.unit), _short(moved.difference.half, moved.unit)
     # a level counts from what is declared, so that its values alone would say nothing
-    values = "" if name else f": {_short(moved.here.value, moved.unit)} after {_short(moved.there.value, moved.unit)}"
+    here, there = (_short(_told(moved, one), moved.unit) for one in (moved.here, moved.there))
+    values = "" if name else f": {here} after {there}"
     return f"{subject} {size} (± {spread}) {way} {places}{values}"
 
 
@@ -104,9 +120,9 @@ def from_to(first: float, last: float, unit: str) -> str:
     return f"from {a} to {b} {label}".rstrip()
 
 
-def _told(size: Measure) -> float:
-    """A size; none where it is not told from none."""
-    return size.value if abs(size.value) > size.half else 0.0
+def _told(moved: Moved, value: Measure) -> float:
+    """A value as it is said; 0 where it is not told from that."""
+    return value.value if moved.is_told(value) else 0.0
 
 
 def _short(value: float, unit: str) -> str:

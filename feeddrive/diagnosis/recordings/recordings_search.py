@@ -106,18 +106,23 @@ def _with_effects_of_one(problem: Problem, best: Searched, progress: Callable[[s
     """The search, or one with effects that the recording of which most is left shows by itself, where that is better.
 
     An effect that one recording alone has is worse than none in the others: asked of all in common it does not pay.
+    Each recording is asked once, as long as one brings more.
     """
-    apart = _left_most(best.search)
-    if apart is None or problem.budget.skips("effects of one recording alone"):
-        return best
-    progress(f"searching {apart.recording.name} alone")
-    found = without_shifts(best.search.fit.effects)
-    alone = search(replace(problem, evidence=(apart,)), progress).fit.effects
-    more = [effect for effect in alone if member(effect) not in members_of(found)]
-    if not more:
-        return best
-    of_last = apart.recording is problem.evidence[-1].recording
-    return _better(best, _continued(problem, (*found, *more), progress, of_last))
+    asked: list[Evidence] = []
+    while (apart := _left_most(best.search)) is not None and apart.recording not in [one.recording for one in asked]:
+        if problem.budget.skips("effects of one recording alone"):
+            break
+        asked.append(apart)
+        progress(f"searching {apart.recording.name} alone")
+        found = without_shifts(best.search.fit.effects)
+        alone = search(replace(problem, evidence=(apart,)), progress).fit.effects
+        more = [effect for effect in alone if member(effect) not in members_of(found)]
+        of_last = apart.recording is problem.evidence[-1].recording
+        other = _better(best, _continued(problem, (*found, *more), progress, of_last)) if more else best
+        if other is best:
+            break
+        best = other
+    return best
 
 
 def _left_most(found: Search) -> Evidence | None:
