@@ -11,7 +11,7 @@ from collections.abc import Collection
 
 import numpy as np
 
-from feeddrive.diagnosis.friction_at_port import declared_level
+from feeddrive.diagnosis.friction_at_port import TYPICAL_VELOCITY, declared_level, declared_viscous
 from feeddrive.diagnosis.heat.heat_candidates import is_material_heat
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.base import Effect, Kind, Port, number
@@ -21,8 +21,9 @@ from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.plant.plant import Plant
 
 LEAST_FACTOR = 0.005
-"""Deviation of a friction factor from 1. No declared friction is known to that, but a quiet drive shows it, and what
-shows and is left without its name leaves the error to the next best one."""
+"""Deviation of a friction factor from 1, and share of the drag that falls as it warms, or is other in a direction. No
+declared friction is known to that, but a quiet drive shows it, and what shows and is left without its name leaves the
+error to the next best one."""
 
 LEAST_SOFTENING = 0.02
 """Stiffness that is lost around zero force, over that under load."""
@@ -51,6 +52,11 @@ def is_material(effect: Effect, plant: Plant) -> bool:
     values = {key: value for key, value in effect.values.items() if isinstance(value, float)}
     if effect.name == "friction_deviation":
         return any(abs(values[key] - 1) >= LEAST_FACTOR for key in ("coulomb_factor", "viscous_factor"))
+    if effect.name == "viscous_warmup":
+        return abs(values["share"]) >= LEAST_FACTOR
+    if effect.name == "viscous_asymmetry":
+        other = abs(values["delta_viscous"]) * TYPICAL_VELOCITY
+        return other >= LEAST_FACTOR * declared_viscous(plant, Port.TABLE)
     if effect.name == "stiffness_vs_position":
         return max(abs(values["share_over_stroke"]), abs(values["middle_compliance"])) >= LEAST_SHARE
     if effect.name == "preload_loss" and values["ratio"] > 1 - LEAST_SOFTENING:
