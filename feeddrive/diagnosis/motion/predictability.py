@@ -14,7 +14,7 @@ strokes. So the error is simulated as large as it is.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -99,9 +99,9 @@ def _missed(plant: Plant, evidence: AxisEvidence, draws: int) -> Missed:
     plant = evidence.placed(plant)
     radius, error = plant.chain.motor_radius, _encoder_error(evidence)
     base, squares = _behind(plant, evidence.motion, evidence), np.zeros(len(evidence.recording))
-    motions = _other_motions(evidence, error, draws)
-    for other in motions:
-        squares += evidence.band.filter(_behind(plant, other, evidence) - base) ** 2 / len(motions)
+    count = len(evidence.drawn[:draws]) or draws
+    for other in _other_motions(evidence, error, draws):
+        squares += evidence.band.filter(_behind(plant, other, evidence) - base) ** 2 / count
     about = 2 * round(REACH / (evidence.band.edge * evidence.recording.sample_time)) + 1
     table = np.sqrt(np.maximum(uniform_filter1d(squares, about), 0.0))  # a running sum may end below zero
     return Missed(table, error * radius)
@@ -121,15 +121,15 @@ def _encoder_error(evidence: AxisEvidence) -> float:
     return max(math.hypot(white_noise(measured, evidence.band.sample_rate), steps), TINY_ANGLE)
 
 
-def _other_motions(evidence: AxisEvidence, error: float, draws: int) -> list[MotorMotion]:
+def _other_motions(evidence: AxisEvidence, error: float, draws: int) -> Iterator[MotorMotion]:
     """Motions that the motor may have made as well: with the encoder's error [rad] once more, as many as there are."""
     if evidence.drawn:
-        return [*evidence.drawn[:draws]]
-    generator, motion, found = np.random.default_rng(20240501), evidence.motion, []
+        yield from evidence.drawn[:draws]
+        return
+    generator, motion = np.random.default_rng(20240501), evidence.motion
     for _ in range(draws):
         drawn = error * generator.standard_normal(len(evidence.recording))
-        found.append(replace(motion, angle=motion.angle + on_grid(drawn, motion.substeps)))
-    return found
+        yield replace(motion, angle=motion.angle + on_grid(drawn, motion.substeps))
 
 
 def _lost(missed: Missed, evidence: AxisEvidence) -> BoolArray:
