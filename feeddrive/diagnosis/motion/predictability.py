@@ -44,12 +44,9 @@ REACH = 1.0
 LINEAR = 3.0
 """Growth that is no sign of free play; without it, it is about one."""
 
-DRAWS = 2
-"""Motions that differ; by one alone a contact may by chance not be moved."""
-
-JUDGED_DRAWS = 8
-"""As many where a recording is judged: two came together by chance for some hundredths of a second in the middle of
-chaos, and nearly all of the error that was told was of those."""
+DRAWS = 8
+"""Motions that differ. By one alone a contact may by chance not be moved; two came together for hundredths of a second
+in the middle of chaos: nearly all of the error that was told was of those, and a tight place was fitted."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +66,7 @@ def predictable_samples(plant: Plant, evidence: AxisEvidence) -> BoolArray:
     """Samples that the plant can predict, shape (n,); all of them where there is no free play."""
     if not has_play(plant.effects):
         return np.ones(len(evidence.recording), dtype=bool)
-    return ~_lost(_missed(plant, evidence, JUDGED_DRAWS), evidence)
+    return ~_lost(_missed(plant, evidence), evidence)
 
 
 def weights_to_fit(plant: Plant, evidence: AxisEvidence) -> BoolArray | FloatArray:
@@ -80,7 +77,7 @@ def weights_to_fit(plant: Plant, evidence: AxisEvidence) -> BoolArray | FloatArr
     """
     if not has_play(plant.effects):
         return np.ones(len(evidence.recording), dtype=bool)
-    missed = _missed(plant, evidence, DRAWS)
+    missed = _missed(plant, evidence)
     lost = _lost(missed, evidence)
     if "table_position" not in evidence.noise or (not lost.any() and np.max(missed.table) <= LINEAR * missed.cause):
         return ~lost
@@ -95,12 +92,12 @@ def has_play(effects: Sequence[Effect]) -> bool:
     return any(isinstance(effect, TransmissionEffect) and effect.has_play for effect in effects)
 
 
-def _missed(plant: Plant, evidence: AxisEvidence, draws: int) -> Missed:
+def _missed(plant: Plant, evidence: AxisEvidence) -> Missed:
     plant = evidence.placed(plant)
     radius, error = plant.chain.motor_radius, _encoder_error(evidence)
     base, squares = _behind(plant, evidence.motion, evidence), np.zeros(len(evidence.recording))
-    count = len(evidence.drawn[:draws]) or draws
-    for other in _other_motions(evidence, error, draws):
+    count = len(evidence.drawn[:DRAWS]) or DRAWS
+    for other in _other_motions(evidence, error):
         squares += evidence.band.filter(_behind(plant, other, evidence) - base) ** 2 / count
     about = 2 * round(REACH / (evidence.band.edge * evidence.recording.sample_time)) + 1
     table = np.sqrt(np.maximum(uniform_filter1d(squares, about), 0.0))  # a running sum may end below zero
@@ -121,13 +118,13 @@ def _encoder_error(evidence: AxisEvidence) -> float:
     return max(math.hypot(white_noise(measured, evidence.band.sample_rate), steps), TINY_ANGLE)
 
 
-def _other_motions(evidence: AxisEvidence, error: float, draws: int) -> Iterator[MotorMotion]:
+def _other_motions(evidence: AxisEvidence, error: float) -> Iterator[MotorMotion]:
     """Motions that the motor may have made as well: with the encoder's error [rad] once more, as many as there are."""
     if evidence.drawn:
-        yield from evidence.drawn[:draws]
+        yield from evidence.drawn[:DRAWS]
         return
     generator, motion = np.random.default_rng(20240501), evidence.motion
-    for _ in range(draws):
+    for _ in range(DRAWS):
         drawn = error * generator.standard_normal(len(evidence.recording))
         yield replace(motion, angle=motion.angle + on_grid(drawn, motion.substeps))
 
