@@ -15,7 +15,7 @@ from feeddrive.diagnosis.finding.attempt import (
     refuse_of_no_hours,
 )
 from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_curves, with_curves_of
-from feeddrive.diagnosis.finding.round import FAIR_PART, Round
+from feeddrive.diagnosis.finding.round import Round
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
 from feeddrive.diagnosis.finding.spring_law import LAWS, play_from_declared, with_likelier_law
 from feeddrive.diagnosis.likelihood.fit import Fit, error_of, fit
@@ -27,8 +27,7 @@ from feeddrive.errors import InputError
 
 FITTED = 2
 """Sets one move away that are fitted in a round, and one two moves away where slopes say that it is likelier: starts
-are near by design, so that slopes put the likeliest among the first. One that they put at no fair part of another that
-was fitted is not (`FAIR_PART`)."""
+are near by design, so that slopes put the likeliest among the first."""
 
 ASKED = 3 * FITTED
 """As many where an encoder does not tell the motion: what its steps give is asked of a fitted set alone, and a set that
@@ -70,8 +69,6 @@ def likelier(problem: Problem, found: Fit, now: Round, denied: Container[str]) -
     most = ASKED if any(e.at_draws for e in problem.evidence) else FITTED
     for one in [each for each in able if each.is_next][:most] + [each for each in able[:1] if not each.is_next]:
         if one.is_next and sum(each is not None and each.odds > 0 for each in tried) >= FITTED:
-            continue
-        if one.gain < FAIR_PART * max((each.odds for each in tried if each is not None), default=0.0):
             continue
         if tried and problem.budget.skips("sets of effects that came near"):  # the likeliest in any case
             break
