@@ -13,7 +13,8 @@ from feeddrive.effects.base import Port
 Need = Callable[[Scene], str]
 
 LEAST_TURNS = 1.0
-"""Revolutions that must be travelled before a periodic effect can be distinguished from a trend."""
+"""Revolutions from which what repeats with the angle is looked for: within one nothing has come to the same angle again.
+From when on an order is told from a trend its periods say (`sines.FEWEST_PERIODS`)."""
 
 LEAST_STROKE_TURNS = 1.0
 """Stroke in revolutions of the screw from which position and angle are different things."""
