@@ -13,7 +13,7 @@ from feeddrive.effects.base import Port
 Need = Callable[[Scene], str]
 
 LEAST_TURNS = 1.0
-"""Revolutions from which what repeats with the angle is looked for: within one nothing has come to the same angle again.
+"""Revolutions from which what repeats with the angle is looked for: within one nothing comes to the same angle again.
 From when on an order is told from a trend its periods say (`sines.FEWEST_PERIODS`)."""
 
 LEAST_STROKE_TURNS = 1.0
