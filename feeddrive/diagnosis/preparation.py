@@ -22,7 +22,7 @@ from feeddrive.diagnosis.motion.slow_rows import is_slow
 from feeddrive.diagnosis.suspicion.torque_channel import refuse_what_is_no_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
-from feeddrive.recording import Recording, check_against_lead, without_unfollowed_setpoint
+from feeddrive.recording import Recording, check_against_lead, check_against_stroke, without_unfollowed_setpoint
 from feeddrive.recording.checks.copies import refuse_copied_setpoint
 from feeddrive.recording.long.joined import shortened
 
@@ -98,6 +98,7 @@ def prepared(
         _refuse_heat(recording)
         refuse_copied_setpoint(recording)
         check_against_lead(recording, lead, recording.name)
+        check_against_stroke(recording, lead, plant.stroke, recording.name)
     recordings, validation = (
         [without_unfollowed_setpoint(one, lead) for one in ones] for ones in (recordings, validation)
     )

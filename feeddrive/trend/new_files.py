@@ -12,7 +12,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
-from feeddrive.recording import check_against_lead
+from feeddrive.recording import check_against_lead, check_against_stroke
 from feeddrive.trend.checkpoint import BROKEN, COPY, UNDATED, USED, WAITING, Checkpoint, Entry, save_checkpoint
 from feeddrive.trend.folder import UNFINISHED, Source, opened, sources, stamp_of
 from feeddrive.trend.regressors import grid_for, linear_pass
@@ -108,7 +108,9 @@ def _with_source(plant: Plant, source: Source, options: Options, kept: Checkpoin
     grid = kept.grid
     try:
         recording = replace(found.recording, name=source.key)
-        check_against_lead(recording, 2 * np.pi * plant.chain.motor_radius, source.key)
+        lead = 2 * np.pi * plant.chain.motor_radius
+        check_against_lead(recording, lead, source.key)
+        check_against_stroke(recording, lead, plant.stroke, source.key)
         grid = kept.grid or grid_for(plant, recording)
         passes = linear_pass(recording, plant, grid)
     except InputError as error:

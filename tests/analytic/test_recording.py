@@ -20,6 +20,7 @@ from feeddrive.recording import (
     Recording,
     channel_unit,
     check_against_lead,
+    check_against_stroke,
     read_recording,
     without_unfollowed_setpoint,
     write_recording,
@@ -393,6 +394,27 @@ def test_channels_that_contradict_the_lead(change: object, said: str) -> None:
     assert message.startswith("a.csv: ")
     assert said in message
     assert "\n" not in message
+
+
+@pytest.mark.parametrize(
+    ("factor", "stroke_length", "said"),
+    [
+        (1.0, 0.1, ""),
+        (1.0, 0.06, ""),  # the table went 95 mm with nine tenths of its rows: an overtravel, or a stroke in use
+        (180 / math.pi, 0.12, "looks like degrees"),
+        (2 * math.pi, 0.12, "check the unit of motor_angle, and the lead"),
+        (1.0, 0.04, "check the unit of motor_angle, and the lead"),
+        (1000.0, 0.12, "check the unit of motor_angle, and the lead"),
+    ],
+)
+def test_a_motor_that_turns_further_than_the_stroke(factor: float, stroke_length: float, said: str) -> None:
+    recording = stroke()
+    angle = factor * recording["motor_angle"]
+    angle[7] = 1e6  # an outlier cell is not a stroke
+    there = recording.with_channels({"motor_angle": angle})
+    with pytest.raises(InputError, match=said) if said else nullcontext():
+        check_against_stroke(there, LEAD, (0.2, 0.2 + stroke_length), "a.csv")
+    check_against_stroke(there, LEAD, None, "a.csv")
 
 
 @pytest.mark.parametrize("factor", [1000.0, 0.0, -1.0])

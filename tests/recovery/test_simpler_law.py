@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.finding.scene import scene_of
-from feeddrive.diagnosis.finding.simpler_law import less_than_a_period, level_everywhere, without_resonance
+from feeddrive.diagnosis.finding.simpler_law import (
+    as_force,
+    less_than_a_period,
+    level_everywhere,
+    without_resonance,
+)
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.prediction import AxisPredictor
@@ -17,6 +22,8 @@ from feeddrive.effects.chain.structural_mode import NO_PEAK, StructuralMode
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.friction.stribeck import Stribeck
 from feeddrive.effects.source.ball_pass_ripple import BallPassRipple
+from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.source.position_spring import PositionSpring
 from feeddrive.effects.source.torque_ripple import TorqueRipple
 from tests.recovery.drawn import drawn
 from tests.recovery.planted import axis_plant, pair
@@ -78,3 +85,16 @@ def test_a_mode_without_a_peak_has_none_in_its_deflection() -> None:
     for damping, has_peak in ((NO_PEAK - 0.02, True), (NO_PEAK + 0.02, False)):
         deflection = np.abs(1 / (1 - ratio**2 + 2j * damping * ratio))
         assert bool(np.max(deflection) > deflection[0] * (1 + 1e-6)) is has_peak
+
+
+def test_a_force_beside_a_spring_is_where_the_spring_pulls_nowhere() -> None:
+    """The force of both is that of one spring: two values tell it, and no third."""
+    law = PositionSpring.of(stiffness=2000.0, zero=0.35)
+    problem = bench_with(law)
+    two = (ConstantForce.of(force=-400.0), law.with_values(zero=0.15))
+    found = fit(problem, two, iterations=0)
+    _, there = as_force(problem, found, 20)
+    (spring,) = there.effects
+    assert spring.name == "position_spring"
+    assert spring.values["zero"] == pytest.approx(0.35, abs=1e-3)  # read off 2000 N/m beside a noise of 0.1 N
+    assert there.squared_error <= found.squared_error

@@ -56,7 +56,8 @@ def as_force(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
     """A set with a constant force where it has a spring, where that is likelier; else as it is.
 
     A spring is a force that also changes along the stroke, and near one no slope tells of a set without it: the force
-    of some thousand newtons that goes with it is too far.
+    of some thousand newtons that goes with it is too far. Beside a spring a constant force says where that pulls
+    nowhere, which is a value of the spring's: k (x - x0) + F0 = k (x - (x0 - F0 / k)).
 
     Args:
         problem: recordings.
@@ -64,13 +65,28 @@ def as_force(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
         count: candidates and starts that were tried.
     """
     names = [effect.name for effect in found.effects]
-    if PositionSpring.name not in names or ConstantForce.name in names:
+    if PositionSpring.name not in names:
         return problem, found
+    if ConstantForce.name in names:
+        problem, found = _with_force_in_spring(problem, found)
     spring, rest = _apart(found, PositionSpring.name)
     way = problem.plant.middle - number(spring.values["zero"])
     force = ConstantForce.of(force=number(spring.values["stiffness"]) * way)
     other = refitted(problem, fit(problem, (*rest, force), iterations=JOINT_ITERATIONS))
     return other if odds_between(Standing(problem, found), Standing(*other), count) > 0 else (problem, found)
+
+
+def _with_force_in_spring(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """A set whose spring pulls nowhere where it did together with a constant force."""
+    force, others = _apart(found, ConstantForce.name)
+    shift = number(force.values["force"])
+    effects = [
+        one.with_values(zero=number(one.values["zero"]) - shift / number(one.values["stiffness"]))
+        if isinstance(one, PositionSpring) and number(one.values["stiffness"])
+        else one
+        for one in others
+    ]
+    return refitted(problem, fit(problem, effects, iterations=JOINT_ITERATIONS))
 
 
 def level_everywhere(problem: Problem, found: Fit) -> list[Effect]:

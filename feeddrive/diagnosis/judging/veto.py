@@ -258,11 +258,11 @@ def _no_gain(found: Search, place: int, share: Share) -> str:
         scatter = max(comparison.standard_error, comparison.least)
         gain = percent(comparison.gain, 2)
         return f"on the judged data it lowers the squared error by {gain}, scatter {percent(scatter, 2)}"
-    inside = _left_out_gain(found, place)
-    if inside.gain > SURE * inside.standard_error:
+    inside, levelled = _left_out_gains(found, place)
+    if any(one.gain > SURE * one.standard_error for one in (inside, *levelled)):
         return ""
     if share.size < UNSEEN:  # no judged sample meets it: it may be a passage shorter than a block, which its parts tell
-        parts = _left_out_gain(replace(found, problem=with_short_blocks(found.problem)), place)
+        parts, _ = _left_out_gains(replace(found, problem=with_short_blocks(found.problem)), place)
         if parts.gain > max(parts.least, SURE * parts.standard_error):
             return ""
     return (
@@ -271,12 +271,18 @@ def _no_gain(found: Search, place: int, share: Share) -> str:
     )
 
 
-def _left_out_gain(found: Search, place: int) -> Comparison:
-    """What an effect brings on blocks left out of the fit, the others refitted without it."""
+def _left_out_gains(found: Search, place: int) -> tuple[Comparison, list[Comparison]]:
+    """What an effect brings on blocks left out of the fit, the others refitted without it.
+
+    Where it lowers the error at all, the comparison with every block over its own level is beside it: a block that
+    alone goes to one end of the stroke is missed by far where it is left out, and makes the scatter of all.
+    """
     problem, effects = found.problem, found.fit.effects
     rest = [*effects[:place], *effects[place + 1 :]]
     wide = regained(problem, rest)
-    return gain_between(Standing(wide, fit(wide, rest, iterations=2)), Standing(problem, found.fit))
+    pair = Standing(wide, fit(wide, rest, iterations=2)), Standing(problem, found.fit)
+    gain = gain_between(*pair)
+    return gain, [gain_between(*pair, levelled=True)] if gain.gain > gain.least else []
 
 
 def _worst_channel(problem: Problem, judged: Sequence[Judged]) -> str:

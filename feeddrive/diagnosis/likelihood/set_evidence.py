@@ -52,6 +52,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
 from feeddrive.diagnosis.likelihood.cross_validation import (
     Comparison,
     compare_left_out,
+    compare_levelled,
     least_gain,
     left_out_residual,
     model_error_rows,
@@ -291,21 +292,23 @@ def _odds_beside_encoder(first: Standing, second: Standing, count: int, beyond: 
     return log_odds(second.problem, first.fit, second.fit, count, beyond, first.problem, encoder)
 
 
-def gain_between(first: Standing, second: Standing, in_folds: bool = True) -> Comparison:
+def gain_between(first: Standing, second: Standing, in_folds: bool = True, levelled: bool = False) -> Comparison:
     """What the second of two sets brings, each on the samples that it predicts.
 
     Args:
         first: a set.
         second: another.
         in_folds: on blocks left out; else as fitted, where a free play leaves too few blocks to leave one out.
+        levelled: with every block over the level of what both leave of it (`compare_levelled`).
     """
     blocks, others = block_numbers(first.problem), block_numbers(second.problem)
     without, errors = first.fit.residual, second.fit.residual
+    compare = compare_levelled if levelled else compare_left_out
     if in_folds:
         without = left_out_residual(first.problem, first.fit, blocks)
         errors = left_out_residual(second.problem, second.fit, others)
     if same_samples(first.problem, second.problem):
-        return compare_left_out(without, errors, others, least_gain(second.problem, without, errors))
+        return compare(without, errors, others, least_gain(second.problem, without, errors))
     inside, its = _inside(first.problem, second.problem), _inside(second.problem, first.problem)
     before, after = without[inside], errors[its]
     least = least_gain(commonly_predicted(second.problem, first.problem), before, after)
@@ -313,7 +316,7 @@ def gain_between(first: Standing, second: Standing, in_folds: bool = True) -> Co
     without, errors = without[~inside], errors[~its]
     first_declines = declining(errors, second.problem.residual(first.fit.effects)[~its], level)
     second_declines = declining(without, first.problem.residual(second.fit.effects)[~inside], level)
-    return compare_left_out(
+    return compare(
         np.concatenate([before, without, first_declines]),
         np.concatenate([after, second_declines, errors]),
         np.concatenate([others[its], blocks[~inside], others[~its]]),

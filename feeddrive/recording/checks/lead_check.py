@@ -1,4 +1,4 @@
-"""Do the channels of a recording fit each other and the lead of the plant? Finds swapped columns and wrong units."""
+"""Do the channels of a recording fit each other, the lead and the stroke? Finds swapped columns and wrong units."""
 
 from __future__ import annotations
 
@@ -26,6 +26,10 @@ _MISTAKES = (
 )
 
 
+_OFF_STROKE = 2.0
+"""Travel over the declared stroke that no overtravel reaches; a unit that is another makes six times or more of it."""
+
+
 def check_against_lead(recording: Recording, lead: float, where: str, factor: float = 0.1) -> None:
     """Refuse channels that contradict the lead [m]; channels that are absent are not judged.
 
@@ -35,6 +39,26 @@ def check_against_lead(recording: Recording, lead: float, where: str, factor: fl
     radius = lead / (2.0 * math.pi)
     if "motor_angle" in recording and "table_position" in recording:
         _check_slope(recording["motor_angle"], recording["table_position"], radius, where, factor)
+
+
+def check_against_stroke(recording: Recording, lead: float, stroke: tuple[float, float] | None, where: str) -> None:
+    """Refuse a motor that turns further than the declared stroke [m] at the lead [m] lets it.
+
+    Where there is no table position beside it, nothing else tells the unit of the angle. The tenth of the rows at
+    either end of the way does not count: a cell may be an outlier.
+    """
+    if stroke is None or "motor_angle" not in recording:
+        return
+    low, high = np.quantile(recording["motor_angle"], (0.1, 0.9))
+    travel, declared = float(high - low) * lead / (2.0 * math.pi), stroke[1] - stroke[0]
+    if travel <= _OFF_STROKE * declared:
+        return
+    way, length = format_quantity(travel, "m"), format_quantity(declared, "m")
+    what = f"motor_angle moves the table by {way} at the lead of the plant, while its stroke is {length}"
+    mend = "check the unit of motor_angle, and the lead, the gear ratio and the stroke in the plant file"
+    if math.degrees(1.0) * declared >= travel > 2.0 * math.pi * declared:  # no rad under revolutions goes so far
+        mend = "motor_angle looks like degrees under a heading of rad: correct the header"
+    raise InputError(what, where, mend)
 
 
 def without_unfollowed_setpoint(recording: Recording, lead: float) -> Recording:
