@@ -5,8 +5,8 @@ are fitted as before. Refined values are kept only where, on data not fitted,
 
 - the closed loop is simulated better: the mean square error of its channels, each in shares of what it was, falls, and
   no channel's rms rises by more than one percent;
-- no predicted channel's squared error rises by a larger share than that of the loop falls: both are errors of one machine on
-  the same samples.
+- no predicted channel's squared error rises by a larger share than that of the loop falls: both are errors of one
+  machine on the same samples.
 
 Otherwise the values of the attribution stay, and the result says so.
 
