@@ -19,6 +19,7 @@ from feeddrive.diagnosis.motion.prediction import AxisPredictor
 from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.diagnosis.motion.row_steps import in_longest_steps
 from feeddrive.diagnosis.motion.slow_rows import is_slow
+from feeddrive.diagnosis.suspicion.motor_jumps import refuse_motor_jumps
 from feeddrive.diagnosis.suspicion.torque_channel import refuse_what_is_no_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
@@ -99,6 +100,7 @@ def prepared(
         refuse_copied_setpoint(recording)
         check_against_lead(recording, lead, recording.name)
         check_against_stroke(recording, lead, plant.stroke, recording.name)
+        refuse_motor_jumps(recording, plant)
     recordings, validation = (
         [without_unfollowed_setpoint(one, lead) for one in ones] for ones in (recordings, validation)
     )

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated
+from feeddrive.diagnosis.certainty.one_sided import is_told_by_slopes
 from feeddrive.diagnosis.certainty.preferred import judged_apart
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.attempt import refuse_at_an_end
@@ -32,6 +33,7 @@ from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import find_effect
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.friction.coulomb_asymmetry import CoulombAsymmetry
+from feeddrive.effects.friction.presliding import Presliding
 from feeddrive.effects.friction.stribeck import Stribeck
 from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.errors import InputError
@@ -348,10 +350,20 @@ def test_an_interval_does_not_deny_what_judged_data_are_clear_about(
 ) -> None:
     """Slopes said that a stiffness of bristles without end lies within its interval; they took 63 % of the error."""
     monkeypatch.setattr(veto, "sizes_around_none", lambda problem, fitted: [AROUND_NONE] * len(fitted.effects))
+    found, _ = kept_of(rigid, Truth(ripple=0.01), RIPPLE)  # whose slopes are the law itself
+    assert found.fit.effects == ()
+    monkeypatch.setattr(veto, "is_told_by_slopes", lambda problem, fitted, place: False)
     found, _ = kept_of(rigid, Truth(ripple=0.01), RIPPLE)
     assert [one.name for one in found.fit.effects] == ["torque_ripple"]
     found, _ = kept_of(rigid, Truth(), RIPPLE)  # which is not there
     assert found.fit.effects == ()
+
+
+def test_slopes_tell_a_sine_and_no_bristle_without_end(rigid: Plant) -> None:
+    problem, _, _ = prepared(rigid, [rigid_run("a", Truth(ripple=0.01))], [rigid_run("b", Truth())], 0.75)
+    assert is_told_by_slopes(problem, fit(problem, (RIPPLE,)), 0)
+    bristle = Presliding.of(stiffness=3e6, damping=0.0, break_away=0.0)
+    assert not is_told_by_slopes(problem, fit(problem, (bristle,), iterations=0), 0)
 
 
 @pytest.mark.parametrize(("gain", "stands"), [(0.35, True), (0.005, False)])

@@ -137,6 +137,25 @@ def one_sided(problem: Problem, fitted: Fit, place: int) -> tuple[float, float] 
     return low, end if high is None else high
 
 
+def is_told_by_slopes(problem: Problem, fitted: Fit, place: int) -> bool:
+    """Whether an effect's slopes tell most of what taking it away does, the others following: then its interval holds.
+
+    Args:
+        problem: recordings.
+        fitted: effects.
+        place: of the effect among them.
+    """
+    counts = [len(read_coordinates([effect], problem.plant)) for effect in fitted.effects]
+    own = slice(sum(counts[:place]), sum(counts[: place + 1]))
+    absent, _ = absent_coordinates(fitted.effects, problem.plant)
+    beyond = np.nan_to_num(fitted.coordinates - absent)[own]
+    rest = (*fitted.effects[:place], *fitted.effects[place + 1 :])
+    others = np.linalg.qr(np.delete(fitted.jacobian, own, axis=1))[0]
+    does = np.linalg.norm(_beyond(others, problem.residual(rest) - fitted.residual))
+    told = np.linalg.norm(_beyond(others, fitted.jacobian[:, own] @ beyond))
+    return bool(told >= STRAIGHT * does)
+
+
 def _coordinate(problem: Problem, fitted: Fit, place: int) -> int | None:
     """Place among the coordinates of the only one of an effect, a size that is none at zero; else None."""
     counts = [len(read_coordinates([effect], problem.plant)) for effect in fitted.effects]

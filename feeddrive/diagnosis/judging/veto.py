@@ -34,6 +34,7 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
 from feeddrive.diagnosis.calibration.stated import without_effects
+from feeddrive.diagnosis.certainty.one_sided import is_told_by_slopes
 from feeddrive.diagnosis.finding.attempt import with_short_blocks
 from feeddrive.diagnosis.finding.refitting import at_rest, refitted
 from feeddrive.diagnosis.finding.search import Search
@@ -163,7 +164,7 @@ def _first_denied(found: Search, judged: Sequence[Judged], spared: Collection[st
     reasons = [at_end[i] or idle[i] or around_none[i] or as_declared[i] or pushing[i] for i in named]
     gains = [share.comparison.gain for share in shares]
     asked = [
-        _instead(found, i, gains, _is_clear(shares[i].comparison))
+        _instead(found, i, gains, shares[i].comparison)
         if shares[i].carries and reason == around_none[i]
         else Denied(i, gains[i], reason)
         for i, reason in enumerate(reasons)
@@ -188,13 +189,13 @@ def _brings_more(found: Search, other: JudgedChanges, name: str) -> bool:
     return worse_by(other.problem, other.allowed, name, than_after=True) > 0
 
 
-def _instead(found: Search, place: int, gains: Sequence[float], clear: bool) -> Denied | None:
+def _instead(found: Search, place: int, gains: Sequence[float], judged: Comparison) -> Denied | None:
     """What goes for an effect that carries while its interval holds none: itself, or what makes that interval so wide.
 
     Of two that say the same either may go, and beside neither is the other told from none. That goes which data not
-    fitted miss less. Where no other does, nothing goes if they are clear about it: bristles whose stiffness was known
-    to a factor of three, beside widths of sign changes, took two thirds of the squared error, and a slope said that a
-    stiffness without end lies within its interval.
+    fitted miss less. Where no other does, nothing goes if they are clear about it and no slope tells what is without
+    it: bristles whose stiffness was known to a factor of three, beside widths of sign changes, took two thirds of the
+    squared error, and a slope said that a stiffness without end lies within its interval.
     """
     effects = found.fit.effects
     less = [i for i in range(len(gains)) if gains[i] < gains[place] and not _differs(effects, i)]
@@ -204,7 +205,8 @@ def _instead(found: Search, place: int, gains: Sequence[float], clear: bool) -> 
         if not sizes_around_none(wide, fit(wide, rest, iterations=ITERATIONS))[place - (other < place)]:
             words = f"beside it {effects[place].name} is not told from none, which lowers the error more"
             return Denied(other, gains[other], words)
-    return None if clear else Denied(place, gains[place], AROUND_NONE)
+    stands = _is_clear(judged) and not is_told_by_slopes(found.problem, found.fit, place)
+    return None if stands else Denied(place, gains[place], AROUND_NONE)
 
 
 def _is_clear(comparison: Comparison) -> bool:
