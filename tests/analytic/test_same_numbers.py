@@ -80,6 +80,18 @@ def test_rows_at_other_times_are_those_of_a_recording_with_such_times(bits: int)
         assert np.max(np.abs(getattr(found, name) - true)) <= allowed
 
 
+@pytest.mark.parametrize("times", [0.4, 1.3, 2.5])
+def test_steps_of_several_rows_stay_so_at_other_times(times: float) -> None:
+    """Of rows that come to lie further apart than a step no more steps are made than they are simulated in."""
+    recording = read_recording(Path(__file__).parents[1] / "data" / "bench" / "backlash_train.csv.gz")
+    rows = replace(recording, time=0.5 * recording.time, sample_time=0.5 * recording.sample_time)
+    plant = read_plant(find_plant("bench_axis"))
+    evidence = prepare(rows, plant, 1.0).in_steps(2)
+    other = evidence.at_other_times(replace(rows, time=times * rows.time, sample_time=times * rows.sample_time))
+    predicted = AxisPredictor().predict(plant, other)
+    assert all(len(series) == len(rows) and np.isfinite(series).all() for series in predicted.values())
+
+
 def test_what_does_nothing_is_the_machine_without_it() -> None:
     """A candidate begins with none of it: no run of its own, and the numbers of one to rounding."""
     recording = read_recording(Path(__file__).parents[1] / "data" / "bench" / "backlash_train.csv.gz")

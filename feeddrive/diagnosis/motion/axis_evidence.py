@@ -276,7 +276,8 @@ class AxisEvidence(Evidence):
         if self.gains:
             angle = known_motion_of(angle, quantisation_step(angle), recording.sample_time)
             angle = angle if self.told is None else angle + self.told
-        motion = motor_motion(from_zero(recording), angle).timed(clock(recording))
+        whole = 1 if self.motion.every > 1 else None  # of steps of several rows none is made of a part of one
+        motion = motor_motion(from_zero(recording), angle, whole).timed(clock(recording))
         drawn = tuple(one.timed(clock(recording)) for one in self.drawn)
         return replace(self, recording=recording, motion=replace(motion, every=self.motion.every), drawn=drawn)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -26,11 +27,14 @@ def contradiction(problem: Problem, found: Fit) -> float:
 def error_within_tolerances(problem: Problem, found: Fit, first: Problem) -> float:
     """Squared error per row of a set beside declared values within their tolerances, over the noise of `first`.
 
-    Left beside any values, and what it costs to have them within their tolerances.
+    Left beside any values, and what it costs to have them within their tolerances. Infinite where the plant cannot be
+    simulated: of recordings of another machine, declared values may end as a mass that is negative.
     """
     there = _over_noise_of(problem, first).plain
-    rows = max(len(there.residual(found.effects)), 1)
-    return there.plain_error(found.effects) + contradiction(there, fit(there, found.effects, iterations=0)) / rows
+    error, rows = there.plain_error(found.effects), max(len(there.residual(found.effects)), 1)
+    if not np.isfinite(error):
+        return math.inf
+    return error + contradiction(there, fit(there, found.effects, iterations=0)) / rows
 
 
 def _over_noise_of(problem: Problem, first: Problem) -> Problem:
