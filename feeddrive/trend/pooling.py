@@ -4,7 +4,9 @@
 
 With the triangle [R11 R12 z1; 0 R22 z2] of recording i the maps see R22, z2 alone, and theta_i follows from R11
 theta_i = z1 - R12 beta: hundreds of recordings are one small least-squares problem. A level or slope that a map
-could hold as well as a term is the term's (maps have mean zero over their places, that of the lead slope zero too).
+could hold as well as a term is the term's (maps have mean zero over their rows, that of the lead slope zero too). The
+maps have a prior of their own, as wide as forces and lead errors are: a place at which hardly a row is, or a stroke of
+part of a revolution, on which a curve, a ripple and a force are one, says nothing of them.
 A tight place drags more where all drags more: the friction map of each recording is that of all times a free factor.
 The last sum is a weak prior of width w, so that a recording that does not show a term says nothing of it and not
 anything.
@@ -24,12 +26,19 @@ INFLATION = 30.0
 """Samples that tell as much as one of white noise: what is left is a fault of the model, alike over a good part of a
 stroke. Sets how a prior weighs against rows, no result."""
 
-SHOWN = 0.5
-"""Share of the prior's width below which a term is known by a recording: its rows say more than the prior does."""
+SHOWN = 0.125
+"""Share of the prior's width below which a term is known by a recording: of a mass four times as wide as declared
+(`watched_quantities.LOOSEST`) to half of it."""
 
 SCALES = 1.0
 """Width of the prior of the share by which a recording's friction map is another one than the usual: from none to
 twice."""
+
+OF_MAPS = {"table_position": "lead_sine", "motor_torque": "force"}
+"""Channel to the term whose width is that of its maps: a lead error, a force."""
+
+TURNS = 2
+"""Times that the maps are taken anew beside their prior: what they leave hardly changes by it."""
 
 STIFF = 1e6
 """Weight of the maps' freedom from level and slope against the rows."""
@@ -76,8 +85,12 @@ def pool(passes: Sequence[Pass], grid: Grid, widths: Mapping[str, float]) -> Poo
     hats = max(one.first + one.hats for one in passes) - low
     places: FloatArray = grid.cell * np.arange(low, low + hats, dtype=np.float64)
     beta = _maps(passes, count, low, hats, places, grid.middle)
+    for _ in range(TURNS):  # the prior is over what the maps leave
+        usual = float(np.sqrt(INFLATION) * np.median([_rest(one, beta, count, low, hats) for one in passes]))
+        weight = usual / widths[OF_MAPS[passes[0].channel]]
+        beta = _maps(passes, count, low, hats, places, grid.middle, weight)
     noise = [_rest(one, beta, count, low, hats) for one in passes]
-    usual = float(np.sqrt(INFLATION) * np.median(noise)) if noise else 0.0
+    usual = float(np.sqrt(INFLATION) * np.median(noise))
     prior = np.diag([max(usual, 1e-300) / widths[name] for name in names])
     values, variance, deviation = (np.empty((len(passes), count)) for _ in range(3))
     wide = np.array([widths[name] for name in names])
@@ -88,6 +101,8 @@ def pool(passes: Sequence[Pass], grid: Grid, widths: Mapping[str, float]) -> Poo
         values[i] = solved[:count]
         inverse = np.linalg.pinv(stacked.T @ stacked)[:count, :count]
         variance[i], deviation[i] = np.diag(inverse), usual * np.sqrt(np.diag(inverse))
+        unseen = ~np.any(one.triangle[:, :count], axis=0)
+        variance[i, unseen], deviation[i, unseen] = 1.0, np.inf
         values[i, deviation[i] > SHOWN * wide] = np.nan
     typical = np.median(variance, axis=0)
     declared = np.median([one.declared for one in passes], axis=0)
@@ -104,8 +119,10 @@ def _placed(one: Pass, low: int, hats: int) -> FloatArray:
     return np.concatenate([at, hats + at])
 
 
-def _maps(passes: Sequence[Pass], count: int, low: int, hats: int, places: FloatArray, middle: float) -> FloatArray:
-    """The common maps, (2 hats,)."""
+def _maps(
+    passes: Sequence[Pass], count: int, low: int, hats: int, places: FloatArray, middle: float, prior: float = 0.0
+) -> FloatArray:
+    """The common maps, (2 hats,); `prior` is the weight of a prior that they are zero."""
     rows, right = [], []
     for one in passes:
         columns = _placed(one, low, hats)
@@ -118,12 +135,14 @@ def _maps(passes: Sequence[Pass], count: int, low: int, hats: int, places: Float
         triangle = np.asarray(np.linalg.qr(np.column_stack([stacked, seen]), mode="r"))
         stacked, seen = triangle[:, :-1], triangle[:, -1]
     size = max(float(np.linalg.norm(stacked)), 1e-300) / np.sqrt(stacked.size)
-    level, slope = np.ones(hats), (places - middle) / max(float(np.ptp(places)), 1e-12)
+    seen_there = np.sum(stacked**2, axis=0)  # as many as rows
+    rows_at = (seen_there[:hats] + seen_there[hats:]) / max(float(seen_there.sum()), 1e-300) * hats
+    level, slope = rows_at, rows_at * (places - middle) / max(float(np.ptp(places)), 1e-12)
     free = np.zeros((3, 2 * hats))
     free[0, :hats], free[1, hats:] = level, level
     if passes[0].channel == "table_position":
         free[2, :hats] = slope  # which a term holds; no term of the forces goes with position
-    small = 1e-6 * size * np.eye(2 * hats)  # hats that no recording visits are zero
+    small = max(1e-6 * size, prior) * np.eye(2 * hats)  # hats that no recording visits are zero
     whole = np.vstack([stacked, STIFF * size * free, small])
     found: FloatArray = np.linalg.lstsq(whole, np.concatenate([seen, np.zeros(3 + 2 * hats)]), rcond=None)[0]
     return found

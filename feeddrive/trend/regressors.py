@@ -194,7 +194,8 @@ class _Columns:
         evidence, radius = self.evidence, self.plant.chain.motor_radius
         angle = evidence.motion.angle[evidence.motion.samples][used]
         ones, v = np.ones(len(position)), speed[used]
-        turn = [np.sin(angle), np.cos(angle)]
+        # over part of a revolution a sine is a curve over the stroke, which the maps have
+        turn = [np.sin(angle), np.cos(angle)] if np.ptp(angle) >= 2 * np.pi else [0.0 * ones, 0.0 * ones]
         if channel == "table_position":
             f = force[used]
             return np.column_stack([ones, position - self.grid.middle, -0.5 * np.sign(f), -f, v, *turn])

@@ -21,6 +21,16 @@ TOLD = 5.0
 LOOSEST = 4.0
 """Prior widths of friction, forces and masses over the declared ones: whatever a machine still moves with."""
 
+POSITIVE = ("stiffness", "elastic_lost_motion", "mass", "coulomb")
+"""Quantities that no machine has none of: recordings that say so do not show them, such as a compliance beside play in
+one slow stroke under one force."""
+
+WORST_LEAD = 1e-3
+"""Lead error of a rolled screw of the lowest grade [m/m]: 0.21 mm over 300 mm (ISO 3408-3, T10), and what heat adds."""
+
+WORST_WOBBLE = 1e-4
+"""Lead error once per revolution of such a screw [m]; grade 5 of ISO 3408-3 allows a tenth of it."""
+
 
 @dataclass(frozen=True, eq=False)
 class Quantity:
@@ -53,10 +63,11 @@ def prior_widths(plant: Plant) -> dict[str, float]:
     mass = inertia_at_motor(plant) / radius**2
     force = LOOSEST * max(mass * 1.0, 100.0)  # N: the declared mass at 1 m/s^2
     compliance = 1.0 / _stiffness(plant) if plant.chain.elastic else 1e-8
+    wobble = LOOSEST * WORST_WOBBLE
     return {
-        "offset": 1e6, "slope": 1e-1, "play": 1e-2, "compliance": LOOSEST * compliance, "delay": 0.1, "lead_sine": 1e-2,
-        "lead_cosine": 1e-2, "mass": LOOSEST * mass, "coulomb": force, "viscous": force / 0.1, "force": force,
-        "ripple_sine": force, "ripple_cosine": force,
+        "offset": 1e6, "slope": LOOSEST * WORST_LEAD, "play": 1e-2, "compliance": LOOSEST * compliance, "delay": 0.1,
+        "lead_sine": wobble, "lead_cosine": wobble, "mass": LOOSEST * mass, "coulomb": force, "viscous": force / 0.1,
+        "force": force, "ripple_sine": force, "ripple_cosine": force,
     }  # fmt: skip
 
 
@@ -76,7 +87,15 @@ def quantities_of(
         found += _travel(_Terms(*pooled["table_position"], count), plant, grid, absolute)
     if "motor_torque" in pooled:
         found += _forces(_Terms(*pooled["motor_torque"], count), plant)
-    return tuple(one for one in found if np.isfinite(one.values).sum() >= 1)
+    return tuple(one for one in found if np.isfinite(one.values).any() and (one.name not in POSITIVE or _is_some(one)))
+
+
+def _is_some(quantity: Quantity) -> bool:
+    """Whether values are more than none by more than they scatter from recording to recording."""
+    known = quantity.values[np.isfinite(quantity.values)]
+    known = 1 / known if quantity.name == "stiffness" else known  # what is seen is a compliance
+    scatter = float(np.std(np.diff(known))) / math.sqrt(2) if len(known) > 2 else 0.0
+    return float(np.median(known)) > TOLD * scatter
 
 
 @dataclass(frozen=True, eq=False)

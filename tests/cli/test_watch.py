@@ -6,8 +6,10 @@ import json
 import warnings
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import feeddrive as fd
 from feeddrive.cli.main import main
 from tests.recovery import trend_machine as machine
 from tests.recovery.trend_files import write_recording
@@ -43,6 +45,26 @@ def test_page_table_and_json(folder: Path, capsys: pytest.CaptureFixture[str]) -
     assert [one["file"] for one in content["recordings"]] == [f"x_2026-01-0{k}.csv" for k in (1, 2, 3)]
     play = next(one for one in content["quantities"] if one["name"] == "play")
     assert len(play["values"]) == 3 and play["unit"] == "m"
+
+
+@pytest.mark.parametrize(("scenario", "shows"), [("friction_map", True), ("slow_reversal", False)])
+def test_a_motion_shows_what_it_can_and_nothing_else(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], scenario: str, shows: bool
+) -> None:
+    """An end of the stroke that hardly a row reaches told of -5969 N, and a stroke of 2 mm of a mass of -1661 kg."""
+    folder = tmp_path / "runs"
+    folder.mkdir()
+    for number in (1, 2, 3):
+        noise = {"table_position": "15 nm", "motor_torque": "0.02 N m"}
+        changed = {f"record.noise.{channel}": size for channel, size in noise.items()} | {"record.seed": number}
+        fd.run(scenario, plant="bench_axis", set=changed).save(folder / f"x_2026-01-0{number}.csv")
+    assert main(["watch", str(folder), "--plant", "bench_axis", "--json"]) == 0
+    found = {one["name"]: one["values"] for one in json.loads(capsys.readouterr().out)["quantities"]}
+    assert np.allclose(found["force"], 0.0, atol=5.0)  # of a Coulomb level of 180 N; none is declared
+    assert ("mass" in found) == shows and ("stiffness" in found) == shows and "torque_ripple" not in found
+    if shows:  # the declared machine, to a tenth: friction rounded by tanh and a power law is no line of the speed
+        assert np.allclose(found["coulomb"], 180.0, rtol=0.1)
+        assert np.allclose(found["stiffness"], 202.8e6, rtol=0.01)
 
 
 @pytest.mark.parametrize(
