@@ -118,9 +118,11 @@ class _Terms:
     def amplitude(self, stem: str) -> tuple[FloatArray, FloatArray] | None:
         """Length of a sine and cosine part, (n,); None where it is not distinguished from none."""
         (sine, variance), (cosine, _) = self[f"{stem}_sine"], self[f"{stem}_cosine"]
-        size = np.hypot(sine, cosine)
-        scatter = np.hypot(np.nanstd(np.diff(sine)), np.nanstd(np.diff(cosine))) / 2 if self.count > 2 else math.inf
-        return (size, variance) if np.nanmedian(size) > TOLD * scatter else None
+        known, size = np.isfinite(sine) & np.isfinite(cosine), np.hypot(sine, cosine)
+        if np.count_nonzero(known) < 3:
+            return None
+        scatter = np.hypot(np.std(np.diff(sine[known])), np.std(np.diff(cosine[known]))) / 2
+        return (size, variance) if np.median(size[known]) > TOLD * scatter else None
 
 
 def _travel(terms: _Terms, plant: Plant, grid: Grid, absolute: bool) -> list[Quantity]:
