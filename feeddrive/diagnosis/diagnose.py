@@ -56,6 +56,7 @@ from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
+from feeddrive.typing import FloatArray
 
 
 @one_thread()
@@ -202,8 +203,26 @@ def _reported(
             *((budget.sentence,) if budget.sentence else ()),
         ),
         untried=budget.sentence,
+        fitted_stroke=_fitted_stroke(found.problem.evidence, plant.chain.motor_radius if plant.has_motion else 0.0),
     )
     return result, (*effects, *rest.effects)
+
+
+def _fitted_stroke(evidence: Sequence[Evidence], radius: float) -> tuple[float, float] | None:
+    """Least and greatest table position at the fitted samples [m]; None where none was recorded.
+
+    Args:
+        evidence: fitted recordings.
+        radius: travel over the motor's angle [m/rad], for recordings without a table position.
+    """
+    found: list[FloatArray] = []
+    for e in evidence:
+        if "table_position" in e.recording:
+            found.append(e.recording["table_position"][e.fit_rows])
+        elif "motor_angle" in e.recording:
+            found.append(radius * e.recording["motor_angle"][e.fit_rows])
+    known = np.concatenate(found) if found else np.empty(0)
+    return (float(np.nanmin(known)), float(np.nanmax(known))) if len(known) else None
 
 
 def _numbers_met(found: Search, doubted: Sequence[MeasuredNumber]) -> tuple[NumberResult, ...]:

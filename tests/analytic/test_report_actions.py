@@ -127,6 +127,9 @@ def test_stroke_is_that_of_the_recording_where_none_is_declared() -> None:
     assert found is not None
     position = recording(4000, 1, "a").variables["table_position"]
     assert found == (np.nanmin(position), np.nanmax(position))
+    low, high = found
+    wider = replace(_diagnosis(), fitted_stroke=(low - 0.1, high - 0.01)).recorded_stroke
+    assert wider == (low - 0.1, high)  # what was fitted was recorded too
 
 
 def test_every_effect_has_a_cure_or_is_left_to_the_plant_file() -> None:

@@ -205,6 +205,7 @@ class Diagnosis:
     measured: tuple[NumberResult, ...] = ()
     quality: tuple[Quality, ...] = ()
     untried: str = ""
+    fitted_stroke: tuple[float, float] | None = None
 
     @property
     def nothing_missing(self) -> bool:
@@ -215,8 +216,9 @@ class Diagnosis:
 
     @property
     def recorded_stroke(self) -> tuple[float, float] | None:
-        """The range of the table position in the judged recordings [m]; None where it is too short to be a stroke."""
+        """The range of the table position in the fitted and the judged recordings [m]; None where that is no stroke."""
         found = [one.variables["table_position"] for one in self.recordings if "table_position" in one.variables]
+        found += [np.array(self.fitted_stroke)] if self.fitted_stroke is not None else []
         known = np.concatenate([one[np.isfinite(one)] for one in found]) if found else np.empty(0)
         if not known.size or np.ptp(known) <= _ROOM:
             return None
