@@ -28,6 +28,7 @@ from feeddrive.diagnosis.judging.result import (
     Unexplained,
     error_without,
 )
+from feeddrive.diagnosis.simulated.simulation_result import SimulationResult
 from feeddrive.diagnosis.unexplained.unexplained_result import Carried
 from feeddrive.effects.base import Port
 from feeddrive.effects.tabulated import TabulatedForce
@@ -35,6 +36,7 @@ from feeddrive.errors import InputError
 from feeddrive.report.figures.drawing import dress, new_figure
 from feeddrive.report.figures.figures import curve_figures, render_figures, report_figures, save_figures
 from feeddrive.report.pages.html import STYLE, report_page, write_report
+from feeddrive.report.pages.section_certainty import simulation_lines
 from feeddrive.report.pages.section_records import Occasion, used_sentence
 from feeddrive.report.pages.sections import verdict_section
 from feeddrive.report.words.number_text import share_text, times_text
@@ -399,3 +401,11 @@ def test_possible_names_are_told_with_their_odds_and_what_settles_them_and_no_he
     (told,) = [one for one in sentences if one.startswith("Possible")]
     assert "(odds 1 to 4)" in told and told.endswith("1.4 times as long settles it.")
     assert words(near.name) not in sentences[0] and "payload" not in sentences[0]
+
+
+def test_the_terminal_says_what_the_simulation_after_holds() -> None:
+    """Three figures after are of effects alone or with tables: which is which is said where they differ."""
+    (line, _) = simulation_lines(SimulationResult("motor_torque", 0.044, 0.0175, 0.0182, 0.0181, False, "kept"))
+    assert "1.75" in line and "with the tables of what no name explains (effects alone: as attributed" in line
+    (line, _) = simulation_lines(SimulationResult("motor_torque", 0.044, 0.0181, 0.0182, 0.0181, True, "kept"))
+    assert "tables" not in line and "refined" in line

@@ -51,7 +51,7 @@ def test_effect_without_parameters_is_still_named() -> None:
 
 @pytest.mark.parametrize(
     ("number", "text"),
-    [(0.99996, "1.00"), (1234.6, "1230"), (0.0, "0"), (-0.0123, "−0.0123"), (1e-9, "1.00·10^−9"), (math.inf, "–")],
+    [(0.99996, "1.00"), (1234.6, "1230"), (0.0, "0"), (-0.0123, "−0.0123"), (1e-9, "1.00·10⁻⁹"), (math.inf, "–")],
 )
 def test_three_significant_digits(number: float, text: str) -> None:
     assert significant(number) == text

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from feeddrive.report.words.number_text import RAISED
 from feeddrive.report.words.words import figure_text
 
 if TYPE_CHECKING:
@@ -96,13 +97,10 @@ def _power_formatters() -> tuple[type[Any], type[Any]]:
     return LogFormatterSciNotation, PlainPowers
 
 
-_RAISED = str.maketrans("-\N{MINUS SIGN}0123456789", "⁻⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
 def without_formula(label: str) -> str:
     """A power of ten that is written as a formula, such as $\\mathdefault{6\\times10^{-4}}$, in plain letters."""
     inner = re.sub(r"^\$\\mathdefault\{(.*)\}\$$", r"\1", label).replace(r"\times", " × ")
-    return re.sub(r"\^\{(.*?)\}", lambda power: power[1].translate(_RAISED), inner)
+    return re.sub(r"\^\{(.*?)\}", lambda power: power[1].translate(RAISED), inner)
 
 
 def legend_above(axes: Axes, columns: int = 4) -> None:

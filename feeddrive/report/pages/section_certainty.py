@@ -133,8 +133,14 @@ def simulation_lines(run: SimulationResult) -> list[str]:
     """The closed loop in lines for the terminal."""
     change = f"{_percent(run.before)} before, {_percent(run.after)} after"
     lines = [f"closed-loop simulation, {run.channel}, unfiltered: {change}"]
+    named = run.after_refinement if run.kept else run.after_attribution
+    alone = ""
+    if named is not None and _percent(named) != _percent(run.after):
+        lines[0] += " with the tables of what no name explains"
+        alone = "effects alone: "
     if run.after_attribution is not None and run.after_refinement is not None:
-        lines[0] += f" (as attributed {_percent(run.after_attribution)}, refined {_percent(run.after_refinement)})"
+        figures = f"as attributed {_percent(run.after_attribution)}, refined {_percent(run.after_refinement)}"
+        lines[0] += f" ({alone}{figures})"
     lines += [f"  {run.statement}"] if run.statement else []
     lines += [f"  not refined: {name}, {reason}" for name, reason in run.not_refined.items()]
     return lines

@@ -93,6 +93,10 @@ def axis_label(words: str, unit: str) -> str:
     return f"{words} [{unit or '1'}]"
 
 
+RAISED = str.maketrans("-\N{MINUS SIGN}0123456789", "⁻⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+"""Digits of an exponent as raised letters."""
+
+
 def fixed(number: float, decimals: int) -> str:
     """A number with a true minus sign and a fixed count of decimals; a dash if it is not finite."""
     if not math.isfinite(number):
@@ -112,7 +116,7 @@ def significant(number: float, digits: int = 3) -> str:
     exponent = math.floor(math.log10(abs(float(f"{number:.{digits - 1}e}"))))
     if not -5 <= exponent <= 6:
         mantissa = fixed(number / 10.0**exponent, digits - 1)
-        return f"{mantissa}·10^{exponent}".replace("-", MINUS)
+        return f"{mantissa}·10{str(exponent).translate(RAISED)}".replace("-", MINUS)
     rounded = round(number, digits - 1 - exponent)
     return fixed(rounded, max(0, digits - 1 - exponent))
 
