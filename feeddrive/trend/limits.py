@@ -88,6 +88,15 @@ def _allowed(
     return math.inf, ""
 
 
+def refuse_no_allowance(quantity: Quantity, text: str) -> None:
+    """Refuse what is given as a limit of a quantity and is none, before anything is searched for it.
+
+    Raises:
+        InputError: a bare number, another unit, or nothing.
+    """
+    _share(text, 1.0, quantity.unit, f"limit {quantity.name}")
+
+
 def _share(text: str, level: float, unit: str, where: str) -> float:
     plain = text.removeprefix("±").strip()
     if plain.endswith("%"):

@@ -72,6 +72,8 @@ def test_a_motion_shows_what_it_can_and_nothing_else(
     [
         (["--limit", "play"], "is no limit"),
         (["--limit", "gap=1 µm"], 'no quantity "gap"'),
+        (["--limit", "play=2"], "limit play"),
+        (["--limit", "play=-1 µm"], "allows nothing"),
         (["--stamp", "%H%M%S"], "names no day"),
         (["--stamp", "%d.%m.%Y"], "no recording can be used"),
         (["--absolute", "nut_temperature"], "has no zero to keep"),

@@ -19,7 +19,7 @@ from feeddrive.trend.change_searches import searched_events
 from feeddrive.trend.checkpoint import USED, save_checkpoint
 from feeddrive.trend.events import Event
 from feeddrive.trend.folder import read_moment
-from feeddrive.trend.limits import Limit
+from feeddrive.trend.limits import Limit, refuse_no_allowance
 from feeddrive.trend.new_files import Options
 from feeddrive.trend.watch import Trend, follow
 
@@ -184,10 +184,14 @@ def watch(
         dict(limits or {}),
     )
     trend, kept = follow(plant.plant, plant.text, plant.entries, place, target, options, report)
-    unknown = set(options.limits or {}) - {one.name for one in trend.quantities if one.watched}
+    given = options.limits or {}
+    unknown = set(given) - {one.name for one in trend.quantities if one.watched}
     if unknown:
         held = ", ".join(one.name for one in trend.quantities if one.watched)
         raise InputError(f'no quantity "{sorted(unknown)[0]}" is watched', "limits", f"it has {held}")
+    for one in trend.quantities:
+        if one.name in given:
+            refuse_no_allowance(one, given[one.name])
     if not search:
         return Watched(plant, trend, target)
     found, kept = searched_events(plant.plant, trend, kept, place, target, options, report)
