@@ -15,6 +15,7 @@ from feeddrive.diagnosis.numbers.measured_file import MEASURABLE, Setting, read_
 from feeddrive.diagnosis.numbers.next_number import mixed, next_numbers
 from feeddrive.diagnosis.numbers.numbers_result import diagnose_numbers
 from feeddrive.diagnosis.plant_text import with_written_values
+from feeddrive.report.words.explained_words import numbers_verdict
 
 HEAD = 'format = "feeddrive-measured/1"\n'
 
@@ -212,3 +213,15 @@ def test_files_of_the_command(tmp_path: Path) -> None:
     before, left = (sum(one[when]["relative"] for one in record["channels"]) for when in ("before", "after"))
     assert left < 0.1 * before
     assert (out / "report.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+
+
+def test_a_value_that_is_asserted_does_not_hide_that_another_is_beyond_too(tmp_path: Path) -> None:
+    """A table of 82 kg keeps the frequency of a stiffness of 120 N/µm, which it cannot make: a spring is soft too."""
+    axis = fd.load("kimm_testbed")
+    stiff = 'quantity = "axial_stiffness"\nvalue = "120 N/µm"\nat = "464 mm"\ntolerance = "2 %"'
+    first = 'quantity = "natural_frequency"\nmotor = "held"\nvalue = "185 Hz"\nat = "464 mm"\ntolerance = "2 Hz"'
+    result = result_of(axis, written(tmp_path, stiff, first))
+    assert [one.value.key for one in result.beyond] == ["table.mass"]
+    assert len(result.suspects) > 1 and "table.mass" not in {one.value.key for one in result.suspects}
+    line = numbers_verdict(result)[0]
+    assert line.startswith("Other than declared: table mass") and "So is one more value" in line

@@ -82,8 +82,8 @@ class NumbersResult:
         explained: whether the numbers are met to their tolerances then.
         within: probability that every value is within its tolerance.
         beyond: values that are asserted to be beyond theirs.
-        suspects: values of which one is beyond its tolerance, and the numbers cannot tell which; empty where one is
-            asserted or none needed.
+        suspects: values of which one, beside those asserted, is beyond its tolerance, and the numbers cannot tell
+            which; empty where none is needed.
         calibrated: values that the numbers move or narrow, the most moved first.
         singles: each value alone made to meet the numbers.
         sets: the sets that were compared, the most probable first.
@@ -128,10 +128,13 @@ def diagnose_numbers(
     chances = inclusion(problem, sets)
     within = sum(one.probability for one in sets if not one.beyond)
     likely = sorted(problem.seen, key=lambda place: -chances[place])
-    asserted = tuple(_beyond(problem, sets, place, chances) for place in likely if chances[place] >= ASSERTED)
+    named = [place for place in likely if chances[place] >= ASSERTED]
+    asserted = tuple(_beyond(problem, sets, place, chances) for place in named)
+    enough = sum(one.probability for one in sets if set(one.beyond) <= set(named))
     suspects: tuple[Beyond, ...] = ()
-    if not asserted and within < 1 - ASSERTED:
-        suspects = tuple(_beyond(problem, sets, place, chances) for place in likely[:MOST_NAMED])
+    if enough < 1 - ASSERTED:
+        others = [place for place in likely if place not in named]
+        suspects = tuple(_beyond(problem, sets, place, chances) for place in others[:MOST_NAMED])
     best = sets[0]
     left = float(
         np.sum([((one.value - f) / one.deviation) ** 2 for one, f in zip(measured, best.predicted, strict=True)])

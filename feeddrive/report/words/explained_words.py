@@ -37,10 +37,12 @@ def odds_text(probability: float) -> str:
 
 
 def _main(result: NumbersResult) -> str:
+    names = ", ".join(one.value.words for one in result.suspects)
     if result.beyond:
-        return f"Other than declared: {'; '.join(map(_finding, result.beyond))}."
-    if result.suspects:
-        names = ", ".join(one.value.words for one in result.suspects)
+        found = f"Other than declared: {'; '.join(map(_finding, result.beyond))}."
+        more = f" So is one more value, and these numbers cannot tell which: {names}." if names else ""
+        return found + more
+    if names:
         return f"A value is beyond its tolerance, and these numbers cannot tell which: {names}."
     return (
         "The declared values explain the numbers within their tolerances: nothing has to be other than declared "
