@@ -95,6 +95,10 @@ def _planted(machine: Machine, effects: tuple[Effect, ...]) -> tuple[Constants, 
     return constants, sampling_of(machine.axis, constants, longest_step(constants, machine.axis.top_speed))
 
 
+FURTHER = 20
+"""Doublings of the stretch in which a hanging table is looked for: a million times that of the law."""
+
+
 def at_rest(setpoint: float, c: Constants) -> State:
     """Return the state that `state_at_rest` does, the weight hanging in the springs and lying on a flank of the play.
 
@@ -114,6 +118,12 @@ def at_rest(setpoint: float, c: Constants) -> State:
 
     softest = c.axial_stiffness * min(c.preload_ratio, 1.0) * (1.0 - abs(c.stroke_share))
     furthest = 2.0 * (c.gap + abs(weight) / softest)
+    for _ in range(FURTHER):  # a relative of a law may be softer than the law
+        if left_to_carry(-furthest) * left_to_carry(furthest) <= 0.0:
+            break
+        furthest *= 2.0
+    else:
+        raise FloatingPointError("no stretch of the springs carries the weight")
     return lowered(float(brentq(left_to_carry, -furthest, furthest, xtol=1e-15)))
 
 
