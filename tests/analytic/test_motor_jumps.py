@@ -10,6 +10,9 @@ import pytest
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.suspicion.motor_jumps import HARDER, refuse_motor_jumps
 from feeddrive.errors import InputError
+from feeddrive.files import find_plant
+from feeddrive.plant.analysis.modes import inertia_at_motor
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.flaws import JOINED, flaw
 from tests.recovery.planted import axis_plant, pair
@@ -47,8 +50,26 @@ def test_rows_written_twice_are_refused_where_no_torque_makes_them(share: float,
     refuse_motor_jumps(there, replace(BENCH, torque_limit=float("inf")))
 
 
+def test_a_rigid_machine_has_no_rotor_of_its_own() -> None:
+    """Its inertia may stand in the mass alone: the motor turns that, and one without a rotor is no division by none."""
+    emps = read_plant(find_plant("emps"))
+    assert emps.chain_values()["motor_inertia"] == 0.0
+    one = moving()
+    angle = one["motor_angle"].copy()
+    angle[700:] = np.concatenate([angle[670:700], angle[700:-30]])
+    jumping, hard = (
+        one.with_channels({"motor_angle": angle}),
+        10.0 / one.sample_time**2 * inertia_at_motor(emps) / HARDER,
+    )
+    refuse_motor_jumps(jumping, replace(emps, torque_limit=2 * hard))  # it jumps by some 12 rad
+    refuse_motor_jumps(one, replace(emps, torque_limit=hard))
+    with pytest.raises(InputError, match="motor_angle jumps by"):
+        refuse_motor_jumps(jumping, replace(emps, torque_limit=hard))
+
+
 @pytest.mark.parametrize("effect", ["null", "backlash", "presliding"])
 def test_motion_that_a_drive_makes_is_none(effect: str) -> None:
+    assert np.isfinite(BENCH.torque_limit)
     for one in pair("bench", effect):
         refuse_motor_jumps(one, BENCH)
 

@@ -11,6 +11,7 @@ import pytest
 
 import feeddrive as fd
 from feeddrive.cli.main import main
+from feeddrive.trend.watched_quantities import Quantity, _is_some
 from tests.recovery import trend_machine as machine
 from tests.recovery.trend_files import write_recording
 
@@ -157,3 +158,18 @@ def test_what_cannot_be_of_a_fleet(
         (folder / "X1").mkdir()
     assert main(["watch", str(place), "--plant", str(folder.parent / "plant.toml"), *words]) == 2
     assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("values", "shown"),
+    [
+        ([100.0, 130.0, 80.0, 110.0, 90.0], True),  # friction that follows the day
+        ([100.0, 101.0, 99.0, 300.0, 301.0], True),  # and one that jumps
+        ([5.0, -20.0, 30.0, -4.0, 12.0], False),
+        ([-1661.0, -1660.0, -1662.0], False),
+        ([100.0], True),
+    ],
+)
+def test_what_no_machine_has_none_of_is_shown_where_it_is_more_than_none(values: list[float], shown: bool) -> None:
+    quantity = Quantity("coulomb", "", "N", np.array(values), np.ones(len(values)))
+    assert _is_some(quantity) is shown

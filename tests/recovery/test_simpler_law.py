@@ -98,3 +98,5 @@ def test_a_force_beside_a_spring_is_where_the_spring_pulls_nowhere() -> None:
     assert spring.name == "position_spring"
     assert spring.values["zero"] == pytest.approx(0.35, abs=1e-3)  # read off 2000 N/m beside a noise of 0.1 N
     assert there.squared_error <= found.squared_error
+    _, bare = as_force(problem, fit(problem, (two[0], law.with_values(stiffness=0.0)), iterations=0), 20)
+    assert [one.name for one in bare.effects] == ["constant_force", "position_spring"]  # it has no place to take

@@ -69,6 +69,8 @@ def as_force(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
         return problem, found
     if ConstantForce.name in names:
         problem, found = _with_force_in_spring(problem, found)
+        if any(effect.name == ConstantForce.name for effect in found.effects):
+            return problem, found
     spring, rest = _apart(found, PositionSpring.name)
     way = problem.plant.middle - number(spring.values["zero"])
     force = ConstantForce.of(force=number(spring.values["stiffness"]) * way)
@@ -77,15 +79,14 @@ def as_force(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
 
 
 def _with_force_in_spring(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
-    """A set whose spring pulls nowhere where it did together with a constant force."""
+    """A set whose spring pulls nowhere where it did together with a force; as it is beside a spring of no stiffness."""
     force, others = _apart(found, ConstantForce.name)
-    shift = number(force.values["force"])
-    effects = [
-        one.with_values(zero=number(one.values["zero"]) - shift / number(one.values["stiffness"]))
-        if isinstance(one, PositionSpring) and number(one.values["stiffness"])
-        else one
-        for one in others
-    ]
+    place = [effect.name for effect in others].index(PositionSpring.name)
+    stiffness, zero = (number(others[place].values[key]) for key in ("stiffness", "zero"))
+    if not stiffness:
+        return problem, found
+    spring = others[place].with_values(zero=zero - number(force.values["force"]) / stiffness)
+    effects = (*others[:place], spring, *others[place + 1 :])
     return refitted(problem, fit(problem, effects, iterations=JOINT_ITERATIONS))
 
 

@@ -7,7 +7,7 @@
 | x | motor angle where a step from row to row is odd (`recording.checks.bad_cells`) | rad |
 | s | usual step beside it | rad |
 | q | resolution | rad |
-| T, J | torque limit and inertia of the rotor, as declared | N m, kg m² |
+| T, J | torque limit and inertia of the rotor, of a rigid machine of all that it turns, as declared | N m, kg m² |
 | h | sample time | s |
 
 A file alone is asked for accelerations that no drive reaches; that of this motor is known beside its plant.
@@ -19,6 +19,7 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d
 
 from feeddrive.errors import InputError
+from feeddrive.plant.analysis.modes import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.bad_cells import AROUND, odd_steps, rows_per_change
@@ -45,7 +46,9 @@ def refuse_motor_jumps(recording: Recording, plant: Plant) -> None:
         return
     angle, step = recording["motor_angle"], resolution(recording["motor_angle"])
     hold = recording.sample_time * rows_per_change(angle)
-    hardest = HARDER * plant.torque_limit / plant.chain_values()["motor_inertia"] * hold**2
+    # of a rigid machine the motor turns all that moves
+    inertia = plant.chain_values()["motor_inertia"] if plant.chain.elastic else inertia_at_motor(plant)
+    hardest = HARDER * plant.torque_limit / inertia * hold**2
     steps, known = np.diff(angle), _known(recording)
     for row in odd_steps(angle, step).tolist():
         beside = np.r_[steps[max(0, row - AROUND) : row], steps[row + 1 : row + 1 + AROUND]]
