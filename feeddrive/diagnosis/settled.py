@@ -14,7 +14,8 @@ from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.denied_again import settled_names
 from feeddrive.diagnosis.judging.judge import Judged, prepared_for_judging
 from feeddrive.diagnosis.judging.law_tables import with_law_tables
-from feeddrive.diagnosis.judging.veto import not_worse_than_declared, without_denied
+from feeddrive.diagnosis.judging.veto import without_denied
+from feeddrive.diagnosis.judging.worse import not_worse_than_declared
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.motion.row_steps import in_told_steps
 from feeddrive.diagnosis.recordings.recordings_search import Searched, search_recordings

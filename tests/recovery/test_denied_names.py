@@ -17,12 +17,13 @@ from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.attempt import refuse_at_an_end
 from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.judging import judge as judge_of
-from feeddrive.diagnosis.judging import veto
+from feeddrive.diagnosis.judging import veto, worse
 from feeddrive.diagnosis.judging.asked_of_fit import AROUND_NONE, ends_reached
 from feeddrive.diagnosis.judging.denied_again import settled_names
 from feeddrive.diagnosis.judging.judge import Judged, Share, prepared_for_judging, share_of
-from feeddrive.diagnosis.judging.veto import not_worse_than_declared, without_denied, worse_by
+from feeddrive.diagnosis.judging.veto import without_denied
 from feeddrive.diagnosis.judging.where_fitted import unseen
+from feeddrive.diagnosis.judging.worse import not_worse_than_declared, worse_by
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.evidence import UNSEEN, Evidence
@@ -318,6 +319,25 @@ def test_torque_is_not_given_up_for_a_lead_map_that_no_name_explains(tmp_path: P
     # weighed by what is left of each channel, not given up: fitted values are nearer than the declared ones
     assert kept.problem.calibration is not None and kept.problem.calibration.values
     assert not_worse_than_declared(kept, again, judge)[0] is kept
+
+
+def test_values_that_stand_alone_may_not_make_all_worse(rigid: Plant, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An encoder's steps scatter so much between blocks that a tenth more error was none: nothing else made it."""
+    runs = [rigid_run("a", Truth())], [rigid_run("b", Truth(seed=2), slow=1.3)]
+    problem, evidence, _ = prepared(rigid, *runs, 0.75)
+    problem = calibrated(problem)
+    alone = Search(problem, fit(problem, ()), (), (), {})
+    monkeypatch.setattr(worse, "worst_channel", lambda problem, judged: "")
+
+    def judged_with(mass: float) -> list[Judged]:
+        return judging(Search(problem, fit(problem, [Payload.of(mass=mass)], iterations=0), (), (), {}), evidence)
+
+    heavy, right = judged_with(3.0), judged_with(1e-3)
+    kept, again = not_worse_than_declared(alone, heavy, lambda other: judging(other, evidence))
+    assert kept is not alone and again is not heavy
+    assert not_worse_than_declared(alone, right, lambda other: heavy)[0] is alone
+    named = Search(problem, fit(problem, [Payload.of(mass=3.0)], iterations=0), (), (), {})
+    assert not_worse_than_declared(named, heavy, lambda other: right)[0] is named
 
 
 def test_no_name_goes_for_what_fitted_values_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

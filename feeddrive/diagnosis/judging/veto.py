@@ -32,7 +32,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
 from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.certainty.one_sided import is_told_by_slopes
 from feeddrive.diagnosis.finding.attempt import with_short_blocks
@@ -46,20 +45,20 @@ from feeddrive.diagnosis.judging.asked_of_fit import (
     sizes_around_none,
     values_within_tolerance,
 )
-from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
+from feeddrive.diagnosis.judging.judge import Judged, Share, share_beyond, share_of
 from feeddrive.diagnosis.judging.where_fitted import unseen, where_fitted
+from feeddrive.diagnosis.judging.worse import not_worse_than_declared, worse_by, worst_channel
 from feeddrive.diagnosis.likelihood.coordinates import (
     read_coordinates,
     write_coordinates,
 )
-from feeddrive.diagnosis.likelihood.cross_validation import Comparison, worse_beyond_scatter
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.evidence import UNSEEN
 from feeddrive.diagnosis.likelihood.fit import fit, linear_step
-from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, regained
 from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.recordings.compared import JudgedChanges, judged_changes
-from feeddrive.diagnosis.recordings.recordings import RecordingShift, is_shift, without_shifts
+from feeddrive.diagnosis.recordings.recordings import RecordingShift, without_shifts
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.units.quantity import percent
@@ -109,35 +108,6 @@ def without_denied(
         judged = judge(found)
 
 
-def not_worse_than_declared(
-    found: Search, judged: list[Judged], judge: Callable[[Search], list[Judged]]
-) -> tuple[Search, list[Judged]]:
-    """The search with declared values that leave no channel worse than declared, where names are not what does it.
-
-    What no name explains in one channel pulls the declared values, and another channel pays for it. They are fitted
-    anew with every channel weighed by what is left of it; where that is worse than declared still, they stay declared.
-
-    Args:
-        found: what was found.
-        judged: recordings with it in.
-        judge: judges another search.
-    """
-    known = found.problem.calibration
-    if known is None or not known.values or not _worst_channel(found.problem, judged):
-        return found, judged
-    if any(is_shift(effect) for effect in found.fit.effects):
-        return found, judged  # what one recording has otherwise is told of as a change
-    for problem in (
-        weighed_by_rest(found.problem, found.fit.effects),
-        with_kept(found.problem, [False] * len(known.values)),
-    ):
-        other = replace(found, problem=problem, fit=fit(problem, found.fit.effects))
-        again = judge(other)
-        if not _worst_channel(problem, again):
-            return other, again
-    return found, judged
-
-
 def _first_denied(found: Search, judged: Sequence[Judged], spared: Collection[str]) -> Denied | None:
     """The denied effect with the least gain on data not fitted; None where there is none."""
     effects, problem = found.fit.effects, found.problem
@@ -146,7 +116,7 @@ def _first_denied(found: Search, judged: Sequence[Judged], spared: Collection[st
         return None
     shares = [_share(found, judged, i) for i in named]
     idle = ["" if effects[i].name in spared else _no_gain(found, i, share) for i, share in enumerate(shares)]
-    worst = _worst_channel(problem, judged)
+    worst = worst_channel(problem, judged)
     other = judged_changes(found, judged) if worst or any(idle) else None
     if other is not None and other.carries:
         # a recording in which the effect itself is another says nothing against it
@@ -157,7 +127,7 @@ def _first_denied(found: Search, judged: Sequence[Judged], spared: Collection[st
             for i, (reason, stood) in enumerate(zip(idle, stands, strict=True))
         ]
         if not worst or _brings_more(found, other, worst):
-            worst = _worst_channel(other.problem, other.allowed)
+            worst = worst_channel(other.problem, other.allowed)
     at_end, around_none = ends_reached(problem, found.fit), sizes_around_none(problem, found.fit)
     as_declared = values_within_tolerance(problem, found.fit)
     pushing = friction_that_pushes(problem, effects)
@@ -285,32 +255,3 @@ def _left_out_gains(found: Search, place: int) -> tuple[Comparison, list[Compari
     pair = Standing(wide, fit(wide, rest, iterations=2)), Standing(problem, found.fit)
     gain = gain_between(*pair)
     return gain, [gain_between(*pair, levelled=True)] if gain.gain > gain.least else []
-
-
-def _worst_channel(problem: Problem, judged: Sequence[Judged]) -> str:
-    """The channel that is worse than declared by the most, beyond its scatter; empty where none is."""
-    worse = {name: worse_by(problem, judged, name) for name in judged_channels(judged)}
-    name = max(worse, key=lambda one: worse[one])
-    return name if worse[name] > 0 else ""
-
-
-def worse_by(problem: Problem, judged: Sequence[Judged], name: str, than_after: bool = False) -> float:
-    """Share by which a channel's squared error as declared is smaller, beyond its scatter; negative where it is not.
-
-    than_after: the other way round, by how much that with what was found is smaller.
-    """
-    before, after, blocks, count, values = [], [], [], 0, 0.0
-    for one in judged:
-        if name not in one.evidence.channels:
-            continue
-        rows = one.evidence.judged_rows
-        step = one.evidence.recording.sample_time
-        numbers = (np.flatnonzero(rows) * step / one.evidence.block).astype(np.int64)
-        before.append(error_series(problem, one.before, one.evidence)[name][rows])
-        after.append(error_series(problem, one.after, one.evidence)[name][rows])
-        blocks.append(count + numbers)
-        count += int(numbers.max(initial=-1)) + 1
-        values += 2 * one.evidence.edge * float(rows.sum()) * step
-    first, second = np.concatenate(before), np.concatenate(after)
-    pair = (second, first) if than_after else (first, second)
-    return worse_beyond_scatter(*pair, np.concatenate(blocks), values)

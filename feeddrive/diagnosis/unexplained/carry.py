@@ -7,15 +7,18 @@ asked of a named effect.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from feeddrive.diagnosis.certainty.uncertainty import score_variances
 from feeddrive.diagnosis.judging.judge import Judged, error_series, judged_residual
 from feeddrive.diagnosis.judging.result import ChannelResult
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
+from feeddrive.diagnosis.likelihood.fit import linear_step
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.slopes import jacobian_of
 from feeddrive.diagnosis.unexplained.analysis import Analysis, analyse, table_of
@@ -29,8 +32,9 @@ from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
-DAMPING = 0.01
-"""Damping of the step on all channels: breakpoints that the recordings hardly see keep the value of the residual."""
+VALUE_DIGITS, BREAKPOINT_DIGITS = 4, 6
+"""Digits of a table's largest value, and of its farthest breakpoint, that are written: a ten-thousandth of a term of no
+name is far below what is known of it, and a breakpoint that moves by a millionth of the stroke changes it by less."""
 
 WORSE = 1.02
 """Factor by which the error of another channel may rise."""
@@ -127,15 +131,20 @@ def _made(
     scale = radius if to_travel else 1 / radius if to_angle and table.breakpoint_unit != "rad" else 1.0
     at, period = scale * at, scale * period
     place = f"periodic_{word}" if period else word
-    given = {word: tuple(at.tolist()), key or kind.value_keys[0]: tuple(values.tolist())}
+    given = {word: tuple(rounded(at, BREAKPOINT_DIGITS)), key or kind.value_keys[0]: tuple(rounded(values))}
     return kind.of(port, place, **given, **({"period": period} if period else {}))
 
 
 def joint_step(
     problem: Problem, before: Sequence[Effect], tables: Sequence[Tabulated]
 ) -> tuple[list[Tabulated], float]:
-    """Tables after one damped linear step on all channels, and the squared error; as they are where it does not help.
+    """Tables after one linear step on all channels, and the squared error; as they are where it does not help.
 
+        |r - J d|^2 / c + |d|^2 / s^2  least
+
+    d is the step from the values y0 that the residual of one channel gave, r and J residual and slopes there, s the rms
+    of a table's y0, and c the variance that the residual's colour leaves along a slope, over that of white noise. What
+    the channels hardly see of a table, a breakpoint or several that cancel, moves by no more than the table is large.
     The other effects stay as they are.
 
     Raises:
@@ -148,15 +157,31 @@ def joint_step(
     here = float(residual @ residual)
     if not (np.isfinite(here) and np.all(np.isfinite(jacobian))):
         raise InputError(f"{tables[-1].name} could not be simulated", tables[-1].name)
-    normal = jacobian.T @ jacobian
-    scale = np.diag(normal) + 1e-9 * np.trace(normal) + 1e-300
-    step = np.linalg.solve(normal + DAMPING * np.diag(scale), jacobian.T @ residual)
-    moved = write_coordinates(tables, problem.plant, read_coordinates(tables, problem.plant) + step)
-    left = problem.residual((*before, *moved))
-    there = float(left @ left)
-    if not there < here:
-        return list(tables), here
-    return [one for one in moved if isinstance(one, Tabulated)], there
+    values = [read_coordinates([table], problem.plant) for table in tables]
+    size = np.concatenate([np.full(len(one), np.sqrt(np.mean(one**2))) for one in values])
+    seen = np.linalg.norm(jacobian, axis=0)
+    left = np.sqrt(score_variances(problem, residual, jacobian)) / np.where(seen > 0, seen, 1.0)
+    prior = np.where(seen > 0, left, 1.0) / np.where(size > 0, size, 1.0)
+    step = linear_step(np.vstack([jacobian, np.diag(prior)]), np.concatenate([residual, np.zeros(len(prior))]))
+    there = write_coordinates(tables, problem.plant, np.concatenate(values) + step)
+    moved = [_rounded(one) for one in there if isinstance(one, Tabulated)]
+    after = problem.residual((*before, *moved))
+    error = float(after @ after)
+    return (moved, error) if error < here else (list(tables), here)
+
+
+def rounded(values: FloatArray, digits: int = VALUE_DIGITS) -> list[float]:
+    """Values, (n,), rounded to digits of the largest: a table is known to no more, and is read by people."""
+    largest = float(np.max(np.abs(values), initial=0.0))
+    if not 0 < largest < np.inf:
+        return [float(one) for one in values]
+    places = digits - 1 - math.floor(math.log10(largest))
+    return [round(float(one), places) for one in values]
+
+
+def _rounded(table: Tabulated) -> Tabulated:
+    """A table with its values rounded as they are written."""
+    return table.with_values(**{key: tuple(rounded(np.array(table.table(key)))) for key in table.tables})
 
 
 def judged_with(problem: Problem, judged: Sequence[Judged], new: Tabulated, channel: str) -> Carried:
