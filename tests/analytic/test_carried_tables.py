@@ -96,6 +96,12 @@ def test_a_breakpoint_that_nothing_meets_keeps_its_value() -> None:
 
 
 def test_values_are_rounded_to_what_people_read() -> None:
-    assert carry.rounded(np.array([0.000123456789, -1.1972863198e-06, 0.0])) == [0.0001235, -1.2e-06, 0.0]
-    assert carry.rounded(np.array([619.2054, 0.13100627636390616]), 6) == [619.205, 0.131]
-    assert carry.rounded(np.zeros(2)) == [0.0, 0.0]
+    assert carry.rounded(np.array([0.000123456789, -1.1972863198e-06, 0.0]), 0.000123456789) == [
+        1.235e-4,
+        -1.2e-06,
+        0.0,
+    ]
+    assert carry.rounded(np.zeros(2), 0.0) == [0.0, 0.0]
+    # a step: two breakpoints within a row of each other stay two
+    assert carry.rounded(np.array([0.0, 4.0997501, 4.1002499]), 4.998e-4) == [0.0, 4.0997501, 4.1002499]
+    assert carry.rounded(np.array([0.0, 0.13100627636390616]), 0.131) == [0.0, 0.131]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.unexplained import functional_anova
-from feeddrive.diagnosis.unexplained.functional_anova import Found, Sample, decompose
+from feeddrive.diagnosis.unexplained.functional_anova import Found, Sample, Sums, decompose
 from feeddrive.diagnosis.unexplained.terms import Form, Term, hats
 from feeddrive.diagnosis.unexplained.view import Floor, excess, travel_since_reversal
 from feeddrive.typing import FloatArray
@@ -96,6 +96,29 @@ def test_a_level_is_preferred_to_a_curve_that_does_as_well(generator: np.random.
 def test_a_step_with_the_direction_is_found_at_its_time(generator: np.random.Generator) -> None:
     (found,) = taken_apart(2.0 * (TIME >= 9.0) * VALUES["direction"] + coloured(generator, 0.5))
     assert (found.term.form, found.term.times, found.term.nodes) == (Form.STEP, "direction", (9.0,))
+
+
+def test_a_product_has_no_level_that_a_function_of_the_velocity_holds(generator: np.random.Generator) -> None:
+    """A shape near rest that the breakpoints miss is a level less a curve: 3 and -3, where 0.5 is left elsewhere."""
+    values, fastest = {**VALUES, "table_velocity": VELOCITY}, float(np.abs(VELOCITY).max())
+    speeds = (-fastest, -0.2 * fastest, 0.0, 0.2 * fastest, fastest)
+    curve = 0.5 * np.sin(np.arange(9))
+    near_rest = VALUES["direction"] - hats(VELOCITY, speeds) @ np.sign(speeds)
+    residual = np.interp(POSITION, NODES, curve) * VALUES["direction"] + 3 * near_rest
+    product, velocity = Term(Form.CURVE, "position", "direction", NODES), Term(Form.CURVE, "table_velocity", "", speeds)
+    columns = [term.columns(values) for term in (product, velocity)]
+    alone = np.linalg.lstsq(np.hstack(columns), residual, rcond=None)[0]
+    assert alone[:9].mean() > 2
+    blocks = (TIME / BLOCK).astype(np.int64)
+    noisy = residual + 0.1 * coloured(generator, 0.5)
+    sums = Sums(Sample(noisy, blocks, np.ones((len(TIME), 1)), lambda term: term.columns(values), 0.01, 0.005))
+    sums.add([product, velocity])
+    found, errors = sums.coefficients([product, velocity])
+    contribution = columns[0] @ found[product]
+    assert contribution @ VALUES["direction"] == pytest.approx(0.0, abs=1e-6 * len(TIME))
+    # rest is met at the ends of a swing alone: what is left there goes into the curve's outer parts, not into a level
+    assert np.abs(found[product]).max() < 1.5 and np.abs(found[velocity]).max() < 1.5
+    assert np.all(np.isfinite(errors[product])) and np.all(np.isfinite(errors[velocity]))
 
 
 def test_two_functions_are_told_apart(generator: np.random.Generator) -> None:

@@ -32,9 +32,9 @@ from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
-VALUE_DIGITS, BREAKPOINT_DIGITS = 4, 6
-"""Digits of a table's largest value, and of its farthest breakpoint, that are written: a ten-thousandth of a term of no
-name is far below what is known of it, and a breakpoint that moves by a millionth of the stroke changes it by less."""
+DIGITS = 4
+"""Digits that a table is written with, of its largest value and of its shortest distance between breakpoints: far less
+than what is known of it."""
 
 WORSE = 1.02
 """Factor by which the error of another channel may rise."""
@@ -131,7 +131,7 @@ def _made(
     scale = radius if to_travel else 1 / radius if to_angle and table.breakpoint_unit != "rad" else 1.0
     at, period = scale * at, scale * period
     place = f"periodic_{word}" if period else word
-    given = {word: tuple(rounded(at, BREAKPOINT_DIGITS)), key or kind.value_keys[0]: tuple(rounded(values))}
+    given = {word: tuple(rounded(at, _shortest(at))), key or kind.value_keys[0]: tuple(values.tolist())}
     return kind.of(port, place, **given, **({"period": period} if period else {}))
 
 
@@ -170,18 +170,23 @@ def joint_step(
     return (moved, error) if error < here else (list(tables), here)
 
 
-def rounded(values: FloatArray, digits: int = VALUE_DIGITS) -> list[float]:
-    """Values, (n,), rounded to digits of the largest: a table is known to no more, and is read by people."""
-    largest = float(np.max(np.abs(values), initial=0.0))
+def rounded(values: FloatArray, largest: float) -> list[float]:
+    """Values, (n,), rounded to `DIGITS` of the largest one: a table is read by people; as they are where that is 0."""
     if not 0 < largest < np.inf:
         return [float(one) for one in values]
-    places = digits - 1 - math.floor(math.log10(largest))
+    places = DIGITS - 1 - math.floor(math.log10(largest))
     return [round(float(one), places) for one in values]
 
 
 def _rounded(table: Tabulated) -> Tabulated:
     """A table with its values rounded as they are written."""
-    return table.with_values(**{key: tuple(rounded(np.array(table.table(key)))) for key in table.tables})
+    lists = {key: np.array(table.table(key)) for key in table.tables}
+    return table.with_values(**{key: tuple(rounded(one, float(np.abs(one).max()))) for key, one in lists.items()})
+
+
+def _shortest(at: FloatArray) -> float:
+    """Shortest distance between breakpoints; 0 where there is one."""
+    return float(np.min(np.diff(at), initial=np.inf)) if len(at) > 1 else 0.0
 
 
 def judged_with(problem: Problem, judged: Sequence[Judged], new: Tabulated, channel: str) -> Carried:

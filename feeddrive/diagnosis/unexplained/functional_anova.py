@@ -21,12 +21,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.linalg import null_space
 
 from feeddrive.diagnosis.finding.remembered import Remembered
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out, prior_information
 from feeddrive.diagnosis.likelihood.folds import FOLDS
 from feeddrive.diagnosis.likelihood.tolerances import SURE
-from feeddrive.diagnosis.unexplained.terms import Term
+from feeddrive.diagnosis.unexplained.terms import Form, Term
 from feeddrive.typing import FloatArray, IntegerArray
 
 MOST_TERMS = 4
@@ -316,16 +317,43 @@ class Sums:
     def coefficients(self, terms: Sequence[Term]) -> tuple[dict[Term, FloatArray], dict[Term, FloatArray]]:
         """Values and standard errors of each term, from the fit to all.
 
-        The middle of the sandwich sums over blocks of time, which counts correlation inside them.
+        The level of a product, the mean of a curve times its factor, is that factor's own function: where another term
+        holds it (`_holds_level`) the curve has none. Both would have it, of opposite signs and many times what is left,
+        for no more than a different shape near rest. The middle of the sandwich sums over blocks of time, which counts
+        correlation inside them.
         """
         gram, moment = (parts.sum(axis=0) for parts in self._normal(terms))
-        inverse = np.linalg.inv(gram + RIDGE * np.eye(len(gram)))
+        known = gram + RIDGE * np.eye(len(gram))
+        free = self._without_levels(terms, gram)
+        inverse = free @ np.linalg.inv(free.T @ known @ free) @ free.T
         scale = np.concatenate([self._scale[term] for term in (None, *terms)])
-        values = inverse @ moment / scale
-        scores = self._columns(terms) * self.fit_residual(terms)[:, None]
+        columns, solved = self._columns(terms), inverse @ moment
+        values = solved / scale
+        scores = columns * (self._sample.residual - columns @ solved)[:, None]
         sums = np.zeros((int(self._sample.blocks.max(initial=0)) + 1, len(gram)))
         np.add.at(sums, self._sample.blocks, scores)
         errors = np.linalg.norm(sums @ inverse, axis=0) / scale
         cuts = np.cumsum([self._fixed, *(term.size for term in terms)])[:-1]
         parts, spreads = np.split(values, cuts), np.split(errors, cuts)
         return dict(zip(terms, parts[1:], strict=True)), dict(zip(terms, spreads[1:], strict=True))
+
+    def _without_levels(self, terms: Sequence[Term], gram: FloatArray) -> FloatArray:
+        """Directions of all columns, (k, l), along which no product has a level that another term holds."""
+        ends = np.cumsum([self._fixed, *(term.size for term in terms)])
+        rows = []
+        for first, last, term in zip(ends[:-1], ends[1:], terms, strict=True):
+            if any(_holds_level(other, term) for other in terms):
+                row = np.zeros(len(gram))
+                row[first:last] = gram[first:last, first:last] @ self._scale[term]
+                rows.append(row)
+        return null_space(np.array(rows)) if rows else np.eye(len(gram))
+
+
+def _holds_level(other: Term, product: Term) -> bool:
+    """Whether a term is a function of the factor that a curve is taken times; a velocity has its direction."""
+    return (
+        bool(product.times)
+        and product.form is Form.CURVE
+        and not other.times
+        and (other.variable in (product.times, "table_velocity"))
+    )

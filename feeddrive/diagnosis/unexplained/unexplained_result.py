@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -276,7 +277,12 @@ class Unexplained:
 
 def no_gain(explains: Mapping[str, float]) -> str:
     """Why a tabulated effect is not carried that does not pay on the judged data."""
-    shares = ", ".join(f"{percent(share, 1)} of {name}" for name, share in explains.items())
+    shares = ", ".join(
+        f"{percent(share, 1)} of {name}"
+        if share > -1
+        else f"with it {name} is missed {math.sqrt(1 - share):.2g} times as far"
+        for name, share in explains.items()
+    )
     return f"not carried, since a table of it does not lower the error on data not fitted enough ({shares})"
 
 
