@@ -55,7 +55,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.evidence import UNSEEN
 from feeddrive.diagnosis.likelihood.fit import fit, linear_step
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, regained
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, missed_by, regained
 from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.recordings.compared import JudgedChanges, judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, without_shifts
@@ -252,6 +252,6 @@ def _left_out_gains(found: Search, place: int) -> tuple[Comparison, list[Compari
     problem, effects = found.problem, found.fit.effects
     rest = [*effects[:place], *effects[place + 1 :]]
     wide = regained(problem, rest)
-    pair = Standing(wide, fit(wide, rest, iterations=2)), Standing(problem, found.fit)
-    gain = gain_between(*pair)
-    return gain, [gain_between(*pair, levelled=True)] if gain.gain > gain.least else []
+    missed = missed_by(Standing(wide, fit(wide, rest, iterations=2)), Standing(problem, found.fit))
+    gain = missed.gain
+    return gain, [missed.levelled_gain] if gain.gain > gain.least else []

@@ -69,7 +69,7 @@ from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
-from feeddrive.typing import BoolArray, FloatArray
+from feeddrive.typing import BoolArray, FloatArray, IntegerArray
 
 PLACES = frozenset({"centre"})
 """Coordinates that are places on the axis: one some hundred strokes away is no place, and the law there is another."""
@@ -292,23 +292,45 @@ def _odds_beside_encoder(first: Standing, second: Standing, count: int, beyond: 
     return log_odds(second.problem, first.fit, second.fit, count, beyond, first.problem, encoder)
 
 
-def gain_between(first: Standing, second: Standing, in_folds: bool = True, levelled: bool = False) -> Comparison:
-    """What the second of two sets brings, each on the samples that it predicts.
+class Missed(NamedTuple):
+    """What two sets miss, (m,) each, with the block of every row, (m,), and the gain that is asked for."""
+
+    before: FloatArray
+    after: FloatArray
+    blocks: IntegerArray
+    least: float
+
+    @property
+    def gain(self) -> Comparison:
+        """What the second set brings."""
+        return compare_left_out(*self)
+
+    @property
+    def levelled_gain(self) -> Comparison:
+        """What the second set brings, with every block over the level of what both leave of it."""
+        return compare_levelled(*self)
+
+
+def gain_between(first: Standing, second: Standing, in_folds: bool = True) -> Comparison:
+    """What the second of two sets brings, as `missed_by`."""
+    return missed_by(first, second, in_folds).gain
+
+
+def missed_by(first: Standing, second: Standing, in_folds: bool = True) -> Missed:
+    """What two sets miss, each on the samples that it predicts.
 
     Args:
         first: a set.
         second: another.
         in_folds: on blocks left out; else as fitted, where a free play leaves too few blocks to leave one out.
-        levelled: with every block over the level of what both leave of it (`compare_levelled`).
     """
     blocks, others = block_numbers(first.problem), block_numbers(second.problem)
     without, errors = first.fit.residual, second.fit.residual
-    compare = compare_levelled if levelled else compare_left_out
     if in_folds:
         without = left_out_residual(first.problem, first.fit, blocks)
         errors = left_out_residual(second.problem, second.fit, others)
     if same_samples(first.problem, second.problem):
-        return compare(without, errors, others, least_gain(second.problem, without, errors))
+        return Missed(without, errors, others, least_gain(second.problem, without, errors))
     inside, its = _inside(first.problem, second.problem), _inside(second.problem, first.problem)
     before, after = without[inside], errors[its]
     least = least_gain(commonly_predicted(second.problem, first.problem), before, after)
@@ -316,7 +338,7 @@ def gain_between(first: Standing, second: Standing, in_folds: bool = True, level
     without, errors = without[~inside], errors[~its]
     first_declines = declining(errors, second.problem.residual(first.fit.effects)[~its], level)
     second_declines = declining(without, first.problem.residual(second.fit.effects)[~inside], level)
-    return compare(
+    return Missed(
         np.concatenate([before, without, first_declines]),
         np.concatenate([after, second_declines, errors]),
         np.concatenate([others[its], blocks[~inside], others[~its]]),

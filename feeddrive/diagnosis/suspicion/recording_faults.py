@@ -38,6 +38,7 @@ from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.diagnosis.motion.prediction import AxisPredictor
 from feeddrive.errors import InputError
+from feeddrive.plant.analysis.modes import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
@@ -178,14 +179,6 @@ def torque_parts(problem: Problem, plant: Plant, evidence: AxisEvidence) -> Torq
         return None
     measured, pushed, rest = series
     return TorqueParts(measured, pushed, rest, float(np.mean(predicted)))
-
-
-def inertia_at_motor(plant: Plant) -> float:
-    """Inertia that the motor turns when nothing gives way [kg m^2]."""
-    values = plant.chain_values()
-    rigid = np.array(plant.chain.rigid_motion(values), dtype=float)
-    mass = np.array(plant.chain.mass(values, plant.middle), dtype=float)
-    return float(rigid @ mass @ rigid) * plant.chain.motor_radius**2
 
 
 def sign_or_factor(seen: TorqueParts) -> Fault:
