@@ -13,7 +13,7 @@ from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, variance_along
 from feeddrive.effects.base import Effect
-from feeddrive.effects.chain.structural_mode import StructuralMode
+from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
 from feeddrive.effects.travel.thermal_growth import ThermalGrowth
@@ -71,12 +71,20 @@ def test_along_what_steps_only_scatter_by_the_colour_of_the_residual_says_it_all
         assert size**2 * float(along @ along) < 9 * (expected + given)
 
 
-def test_what_all_draws_share_stands_against_a_damped_mode(healthy: Problem) -> None:
-    """It takes away what it is asked with, draw by draw the same way."""
-    mode = StructuralMode.of(mass=0.3 * healthy.plant.chain_values()["table_mass"], frequency=120.0, damping=0.3)
-    none, having = fit(healthy, ()), fit(healthy, [mode], iterations=0)
-    given = encoder_along(healthy, healthy.machine(()), healthy.machine([mode]))
-    assert given > variance_along(healthy, none, none, having)
+def test_what_all_draws_share_stands_against_a_mass_of_the_sign_that_they_speak_for(healthy: Problem) -> None:
+    """A mass takes away what it is asked with, draw by draw the same way; of the other sign the steps speak against it.
+
+    They are no reason for what they speak against.
+    """
+    mass = 0.02 * healthy.plant.chain_values()["table_mass"]
+    none = fit(healthy, ())
+
+    def given(sign: float) -> float:
+        return encoder_along(healthy, healthy.machine(()), healthy.machine([Payload.of(mass=sign * mass)]))
+
+    having = fit(healthy, [Payload.of(mass=mass)], iterations=0)
+    assert given(-1.0) > variance_along(healthy, none, none, having)
+    assert given(1.0) == 0.0
 
 
 @pytest.mark.slow

@@ -1,18 +1,20 @@
 """What an encoder's steps alone say for one set of effects against another.
 
-    v = (1/D Σ_d δ_d' ε_d / |δ_d|)²,    δ_d = W (f_B(A_d) - f_A(A_d)),    ε_d = W (f_A(A) - f_A(A_d))
+    v = max(1/D Σ_d δ_d' ε_d / |δ_d|, 0)²,    δ_d = W (f_B(A_d) - f_A(A_d)),    ε_d = W (f_A(A) - f_A(A_d))
 
 | symbol | meaning | unit |
 |---|---|---|
 | A, A_d | motion that is expected, and those that would be if it were the true one (`motion.encoder_error`) | rad |
 | f_A, f_B | what the machines with the set of fewer values and with the other make of a motion, over the noise | 1 |
 | W | takes out what declared values within their tolerances may do (`Calibration`) | 1 |
-| v | square of the mean, over D draws, of what a machine of the set A alone gives along the difference of the two | 1 |
+| v | square of the mean, over D draws, of what a machine of the set A alone gives for B along the difference | 1 |
 
 A residual's own spectrum tells how much an error scatters, not that the answer of a plant to the measured motion holds
 the same error: a mode, a softer spring, a mass answer the motor as a filter does, and take away what they are asked
 with. That is as large in every block of a recording, so that blocks left out do not show it. What a machine of the
 first set gives for the second where the encoder alone is at work is here, in the mean over draws: what they all share.
+Where that is less than nothing the steps speak against the second set, and are no reason for it: a friction that grows
+with the load grows with a load that shakes as well, and hid a spring of three times the floor by what it took away.
 By what they scatter the residual scatters as well, and its own spectrum counts that; what a mean of D holds of it, a
 D-th, is left in. Where either machine has a free play v is the mean of the squares: what the steps do there is at
 reversals, and grows with the motion, which no spectrum of a whole residual tells. v is a part of the variance that the
@@ -56,7 +58,7 @@ def encoder_along(problem: Problem, plain: Plant, other: Plant) -> float:
     if not len(known):
         return 0.0
     plays = has_play((*plain.effects, *other.effects))
-    return float(np.mean(known**2)) if plays else float(np.mean(known)) ** 2
+    return float(np.mean(known**2)) if plays else max(float(np.mean(known)), 0.0) ** 2
 
 
 def _rows(problem: Problem, machine: Plant, at: Sequence[Evidence]) -> FloatArray:
