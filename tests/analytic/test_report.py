@@ -31,7 +31,7 @@ from feeddrive.diagnosis.judging.result import (
 from feeddrive.diagnosis.simulated.simulation_result import SimulationResult
 from feeddrive.diagnosis.unexplained.unexplained_result import Carried
 from feeddrive.effects.base import Port
-from feeddrive.effects.tabulated import TabulatedForce
+from feeddrive.effects.tabulated import TabulatedForce, TabulatedTorque
 from feeddrive.errors import InputError
 from feeddrive.report.figures.drawing import dress, new_figure
 from feeddrive.report.figures.figures import curve_figures, render_figures, report_figures, save_figures
@@ -143,6 +143,13 @@ def test_the_curve_of_a_law_is_told_apart_from_what_has_no_name(found: Diagnosis
         sentences = " ".join(verdict_sentences(dataclasses.replace(found, unexplained=left)))
         assert said in sentences and not_said not in sentences and "over velocity" in sentences
     assert own.record()["curve_of"] == "stribeck" and "curve_of" not in table.record()
+
+
+def test_a_periodic_table_is_told_over_one_period(found: Diagnosis) -> None:
+    torque = TabulatedTorque.of(Port.MOTOR, "periodic_angle", angle=(0.0, 1.0), torque=(1.0, -1.0), period=2.0)
+    left = {"motor_torque": Unexplained(0.1, carried=(Carried("motor_torque", torque, {}, {}, {}, True),))}
+    said = " ".join(verdict_sentences(dataclasses.replace(found, unexplained=left)))
+    assert "a torque on a shaft over one period of the angle." in said
 
 
 def test_nothing_missing_is_said_plainly() -> None:

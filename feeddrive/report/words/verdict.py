@@ -6,6 +6,7 @@ import math
 
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis
 from feeddrive.diagnosis.unexplained.unexplained_result import Carried
+from feeddrive.effects.tabulated import PERIODIC
 from feeddrive.report.words.explained_words import odds_text
 from feeddrive.report.words.number_text import error_text, share_text, significant
 from feeddrive.report.words.parameters import effect_sentence
@@ -21,7 +22,7 @@ def verdict_sentences(diagnosis: Diagnosis) -> list[str]:
     tables = _tables(diagnosis) if diagnosis.effects else ""
     beside = f"Beside these it carries what no named effect explains: {tables}." if tables else ""
     curves = [
-        f"{effect_words(one.curve_of)}, as {effect_words(one.name)} over {plain(one.variable)}"
+        f"{effect_words(one.curve_of)}, as {effect_words(one.name)} over {_over(one.variable)}"
         for one in _carried(diagnosis)
         if one.curve_of
     ]
@@ -31,6 +32,12 @@ def verdict_sentences(diagnosis: Diagnosis) -> list[str]:
     found = [_main_finding(diagnosis), diagnosis.untried, another, beside, changed]
     sentences = [*found, _errors(diagnosis), *_above_noise(diagnosis)]
     return [sentence for sentence in sentences + _beyond(diagnosis) + _doubts(diagnosis) if sentence]
+
+
+def _over(variable: str) -> str:
+    """The variable of a table in words."""
+    within = variable.removeprefix(PERIODIC)
+    return f"one period of the {plain(within)}" if within != variable else plain(variable)
 
 
 def noise_multiple(channel: ChannelResult) -> float:
@@ -66,7 +73,7 @@ def _main_finding(diagnosis: Diagnosis) -> str:
 def _tables(diagnosis: Diagnosis) -> str:
     """What the plant carries as tables because no named effect explains it."""
     carried = [one for one in _carried(diagnosis) if not one.curve_of]
-    return "; ".join(f"{effect_words(one.name)} over {plain(one.variable)}" for one in carried)
+    return "; ".join(f"{effect_words(one.name)} over {_over(one.variable)}" for one in carried)
 
 
 def _carried(diagnosis: Diagnosis) -> list[Carried]:
