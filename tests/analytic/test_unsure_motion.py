@@ -172,3 +172,14 @@ def test_a_vibration_that_comes_once_is_told_where_it_comes() -> None:
     assert np.sqrt(np.mean((beyond - shaken)[inside] ** 2)) < allowed < 0.2 * np.sqrt(np.mean(shaken[inside] ** 2))
     assert np.sqrt(np.mean(beyond[before] ** 2)) < 0.5 * allowed  # and none of the error elsewhere comes with it
     assert np.max(np.interp([55.0, 60.0, 65.0], hertz, told.share)) > 0.1
+
+
+def test_a_rest_before_a_fast_stroke_stays_where_it_is() -> None:
+    """16 bits at 4 kHz: the power of a rest is lost in rounding beside that of a stroke of 140 rad/s."""
+    recording = case(703_320).fit
+    angle, step, sample_time = recording["motor_angle"], 2 * np.pi / 2**16, 1 / 4000
+    expected = expected_motion(angle, step, sample_time)
+    told = told_of(expected)
+    assert told.there.min() >= 0.0 and told.there.max() <= 1.0
+    # what is left out is what the encoder does not tell: some of its steps
+    assert np.max(np.abs(told.known(expected.angle) - angle)) < 4 * step

@@ -260,7 +260,7 @@ def _error_in_windows(
     window = window_of(sample_time)
     power = uniform_filter(np.abs(spectra_of(expected, window)) ** 2, (ALONG_TIME, ALONG_FREQUENCY))
     squares = np.mean([np.abs(spectra_of(error, window)) ** 2 for error in errors], axis=0)
-    wrong = uniform_filter(squares, (ALONG_TIME, ALONG_FREQUENCY))
+    wrong = np.maximum(uniform_filter(squares, (ALONG_TIME, ALONG_FREQUENCY)), 0.0)  # a running sum may end below zero
     local = np.minimum(np.divide(wrong, power, out=np.ones_like(power), where=power > 0), 1.0)
     frequency = np.fft.rfftfreq(len(window), sample_time)
     of_all = left_out(np.interp(frequency, np.fft.rfftfreq(len(expected), sample_time), share))
