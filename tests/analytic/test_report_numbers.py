@@ -10,7 +10,14 @@ import pytest
 from feeddrive.diagnosis.judging.result import EffectResult, JudgedRecording, ParameterResult
 from feeddrive.report.figures.figure_spectrum import density_spectrum, order_spectrum
 from feeddrive.report.figures.thinning import balanced, binned, envelope, left_out_stretches
-from feeddrive.report.words.number_text import fixed, scale_for_error, share_text, significant
+from feeddrive.report.words.number_text import (
+    fixed,
+    scale_for_difference,
+    scale_for_error,
+    scale_for_value,
+    share_text,
+    significant,
+)
 from feeddrive.report.words.parameters import effect_sentence, parameter_text
 
 
@@ -118,3 +125,8 @@ def test_order_spectrum_finds_order_and_amplitude_under_reversals() -> None:
     # Averaging over bins of 1/160 revolution takes sinc(7/160), 0.3 %; 3 % allows for the turning points.
     assert spectrum.amplitude[best] == pytest.approx(0.12, rel=0.03)
     assert order_spectrum([(0.1 * angle, ripple)]) is None  # fewer than three revolutions
+
+
+def test_a_difference_of_temperatures_is_in_kelvin() -> None:
+    assert scale_for_difference(0.3, "degC").unit == "K" and scale_for_difference(0.3, "degC").factor == 1.0
+    assert scale_for_difference(2e-4, "N m") == scale_for_value(2e-4, "N m")

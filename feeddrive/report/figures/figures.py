@@ -27,7 +27,14 @@ from feeddrive.report.figures.figure_dependence import dependence_figure
 from feeddrive.report.figures.figure_series import series_figure
 from feeddrive.report.figures.figure_spectrum import spectrum_figure
 from feeddrive.report.figures.selection import detailed_channels, drawn_series, stem_of
-from feeddrive.report.words.number_text import axis_label, fixed, scale_for_signal, scale_for_value, share_text
+from feeddrive.report.words.number_text import (
+    axis_label,
+    fixed,
+    scale_for_difference,
+    scale_for_signal,
+    scale_for_value,
+    share_text,
+)
 from feeddrive.report.words.words import effect_words, figure_text, plain, variable_words
 
 if TYPE_CHECKING:
@@ -253,7 +260,7 @@ def _panel(axes: Axes, one: Dependence) -> None:
         ends = np.array([min(at[0], centre.min()), max(at[-1], centre.max())])
         at, values, errors = (np.concatenate([a, b, c]) for a, b, c in _held(ends, at, values, errors))
     over = scale_for_signal(one.variable, float(np.abs(at).max()), table.breakpoint_unit)
-    up = scale_for_value(float(np.abs([*values, *mean]).max()), table.unit)
+    up = scale_for_difference(float(np.abs([*values, *mean]).max()), table.unit)
     axes.fill_between(
         over.factor * at, up.factor * (values - errors), up.factor * (values + errors), color=AFTER, alpha=0.2, lw=0
     )

@@ -54,6 +54,11 @@ def scale_for_value(largest: float, unit: str) -> Scale:
     return Scale(factor, label)
 
 
+def scale_for_difference(largest: float, unit: str) -> Scale:
+    """Unit of the trade for differences of values in the SI unit `unit`, of which those of temperatures are in K."""
+    return scale_for_value(largest, "K" if unit_name(unit) == "degC" else unit)
+
+
 def scale_for_error(unit: str) -> Scale:
     """Unit in which errors of a channel are shown: always µm for lengths, so that channels can be compared."""
     name = unit_name(unit)
