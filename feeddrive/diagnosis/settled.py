@@ -17,6 +17,7 @@ from feeddrive.diagnosis.judging.law_tables import with_law_tables
 from feeddrive.diagnosis.judging.veto import without_denied
 from feeddrive.diagnosis.judging.worse import not_worse_than_declared
 from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.fit import fitted_to_the_end
 from feeddrive.diagnosis.motion.row_steps import in_told_steps
 from feeddrive.diagnosis.recordings.recordings_search import Searched, search_recordings
 from feeddrive.diagnosis.recordings.rehoming import rehomed_plant
@@ -99,6 +100,10 @@ def settle(begun: Begun, simulate: bool, progress: Progress, start: Sequence[Eff
     if sure is not found:
         found, judged = sure, judge(sure)
         rivals = rivals_of(found, judged)
+    further = fitted_to_the_end(found.problem, found.fit)
+    if further is not found.fit:
+        found = replace(found, fit=further)
+        judged = judge(found)
     found, judged = not_worse_than_declared(found, judged, judge)
     judged, rehomed = _judged(found, evidence)
     weighed, refinement = found, Refinement(found, (judged, rehomed))

@@ -44,7 +44,7 @@ from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.slopes import COARSE, difference_of
 from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.effects.base import Effect
-from feeddrive.typing import FloatArray, IntegerArray
+from feeddrive.typing import BoolArray, FloatArray, IntegerArray
 
 BEYOND_CHANCE = 0.99
 """Quantile of the blocks' scatter from which they are believed rather than the spectrum."""
@@ -119,7 +119,7 @@ def _certainty(problem: Problem, fitted: Fit, jacobian: FloatArray) -> Certainty
     """How well coordinates are known of which these are the slopes, (m, k)."""
     inverse = inverse_information(jacobian.T @ jacobian)
     rows = [evidence.fit_rows for evidence in problem.evidence]
-    middle = score_covariance(problem.evidence, rows, fitted.residual, jacobian)
+    middle = _scores(problem, rows, fitted.residual, jacobian)
     influence = jacobian @ inverse
     model = model_error_rows(problem.evidence, [e.thinned(e.fit_rows) for e in problem.evidence])
     model = np.concatenate([model, np.zeros(len(problem.numbers))])
@@ -134,6 +134,22 @@ def _certainty(problem: Problem, fitted: Fit, jacobian: FloatArray) -> Certainty
     covariance = covariance * np.outer(more, more) + influence.T @ (model[:, None] * influence) / 1.96**2
     reach = stdtrit(np.where(believed, freedom, max(spectral_freedom(problem.evidence, rows), 2.0)), 0.975)
     return Certainty(covariance, reach)
+
+
+def _scores(
+    problem: Problem, rows: Sequence[BoolArray], residual: FloatArray, jacobian: FloatArray
+) -> FloatArray:  # fmt: skip
+    """S of whitened slopes, (k, k): the residual's colour where it is noise, λ where it is what declared values may be.
+
+    Along the slopes of the declared values the scatter is that of noise and of their tolerances, λ by the whitening;
+    one residual, in which they are what they are once, does not show it.
+    """
+    known = problem.whitener
+    if known is None:
+        return score_covariance(problem.evidence, rows, residual, jacobian)
+    along = known.basis.T @ jacobian
+    beside = score_covariance(problem.evidence, rows, residual, jacobian - known.basis @ along)
+    return beside + known.variance * along.T @ along
 
 
 def score_variances(problem: Problem, residual: FloatArray, columns: FloatArray) -> FloatArray:

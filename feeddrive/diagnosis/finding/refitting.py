@@ -26,8 +26,10 @@ from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit, linear_step
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between
+from feeddrive.diagnosis.motion.predictability import has_play
+from feeddrive.diagnosis.motion.preparing import beside_machine
 from feeddrive.diagnosis.motion.row_steps import in_told_steps
-from feeddrive.effects.base import Effect, FrictionEffect, number
+from feeddrive.effects.base import ChainEffect, Effect, FrictionEffect, number
 from feeddrive.effects.chain.stiffness_deviation import WHOLE, StiffnessDeviation
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 
@@ -56,9 +58,15 @@ def refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
 
 
 def in_steps_told(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
-    """A set fitted where its machine is simulated in steps that nothing tells from the rows of the recordings."""
+    """A set fitted where its machine is simulated in steps that nothing tells from the rows of the recordings.
+
+    What effects on the chain move, its resonances, show the encoder's error elsewhere than the declared machine does.
+    """
     machine = problem.machine(found.effects)
-    evidence = tuple(in_told_steps(e, machine, problem.predictor) for e in problem.evidence)
+    evidence = problem.evidence
+    if any(isinstance(effect, ChainEffect) for effect in found.effects) and not has_play(found.effects):
+        evidence = tuple(beside_machine(e, machine) for e in evidence)
+    evidence = tuple(in_told_steps(e, machine, problem.predictor) for e in evidence)
     if all(one is other for one, other in zip(evidence, problem.evidence, strict=True)):
         return problem, found
     there = replace(problem, evidence=evidence)

@@ -22,6 +22,9 @@ from feeddrive.typing import FloatArray
 ENOUGH = 1e-4
 """A step that lowers the squared error by less than this share ends the fit."""
 
+MOVED = 0.1
+"""Share of a deviation that a fit to the end leaves: intervals are wider by half a per cent for it."""
+
 STRAIGHT = 0.03
 """Bend of the prediction over a step, as a share of the step, below which the slope before it still holds after it."""
 
@@ -68,7 +71,7 @@ class Fit:
 
 def fit(
     problem: Problem, effects: Sequence[Effect], free: Sequence[bool] | None = None, iterations: int = 12,
-    still: Sequence[int] = (),
+    still: Sequence[int] = (), least: float | None = None,
 ) -> Fit:  # fmt: skip
     """Fit the free effects by Levenberg-Marquardt, starting from their values.
 
@@ -78,12 +81,13 @@ def fit(
         free: which are fitted, those that are not first; all if None.
         iterations: at most.
         still: coordinates of the free effects that stay as they are.
+        least: squared error that a step must take away for another one to follow; a share of it (`ENOUGH`) if None.
 
     Returns:
         The fit, its Jacobian taken at the end.
     """
     chosen = [True] * len(effects) if free is None else list(free)
-    at, jacobian = _descended(problem, effects, chosen, iterations, still)
+    at, jacobian = _descended(problem, effects, chosen, iterations, still, least)
     if jacobian is None:
         jacobian = jacobian_of(problem, at.effects, chosen, at.predicted)
     moved = [effect for effect, is_free in zip(at.effects, chosen, strict=True) if is_free]
@@ -91,14 +95,28 @@ def fit(
     return Fit(tuple(at.effects), at.residual, jacobian, read_coordinates(moved, problem.plant), held)
 
 
+def fitted_to_the_end(problem: Problem, found: Fit) -> Fit:
+    """A fit that no step moves by more than `MOVED` of a deviation any more; itself where it is there.
+
+    A share of the squared error ends the other fits: of ten thousand rows that is a step of a deviation along what they
+    hardly tell, a mass beside a stiffness and a torque constant, which intervals and values are to be right to.
+    """
+    least = MOVED**2 * found.squared_error / max(len(found.residual), 1)
+    left = found.residual - found.jacobian @ linear_step(found.jacobian, found.residual)
+    if found.held or not found.squared_error - _squared(left) > least:
+        return found
+    return fit(problem, found.effects, least=least)
+
+
 def fitted_effects(problem: Problem, effects: Sequence[Effect], iterations: int = 12) -> tuple[Effect, ...]:
     """Effects as `fit` leaves them, all free, without the slopes at the end: those are simulations."""
-    return tuple(_descended(problem, effects, [True] * len(effects), iterations, ())[0].effects)
+    return tuple(_descended(problem, effects, [True] * len(effects), iterations, (), None)[0].effects)
 
 
 def _descended(
-    problem: Problem, effects: Sequence[Effect], chosen: Sequence[bool], iterations: int, still: Sequence[int]
-) -> tuple[_State, FloatArray | None]:
+    problem: Problem, effects: Sequence[Effect], chosen: Sequence[bool], iterations: int, still: Sequence[int],
+    least: float | None,
+) -> tuple[_State, FloatArray | None]:  # fmt: skip
     """Where the steps of a fit end, and the Jacobian there; None where the last one was taken elsewhere."""
     measured, predicted = problem.measured, problem.predicted(effects)
     at = _State(list(effects), predicted, measured - predicted)
@@ -120,9 +138,10 @@ def _descended(
         bent, length = at.predicted - before.predicted - straight, float(np.linalg.norm(straight))
         bend = float(np.linalg.norm(bent)) / length if length > 0 else np.inf
         exact = exact and bend < STRAIGHT
-        if before.squared_error - at.squared_error < ENOUGH * before.squared_error:
+        enough = ENOUGH * before.squared_error if least is None else least
+        if before.squared_error - at.squared_error < enough:
             break
-        if damping <= FREE and float(bent @ bent) < ENOUGH * at.squared_error:
+        if damping <= FREE and float(bent @ bent) < enough:
             break  # a further step could gain no more than what this one bent
         if bend < BENT:
             jacobian = jacobian + np.outer(bent, lower.step) / float(lower.step @ lower.step)

@@ -11,7 +11,7 @@ import numpy as np
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence, from_zero, placed
 from feeddrive.diagnosis.motion.band import END_CUT, Band, comparison_band, held, sensor_noise
-from feeddrive.diagnosis.motion.encoder_error import encoder_error
+from feeddrive.diagnosis.motion.encoder_error import MATERIAL, encoder_error
 from feeddrive.diagnosis.motion.flank_rests import flank_rests
 from feeddrive.diagnosis.motion.folded import folded_rows, folded_sentence
 from feeddrive.diagnosis.motion.lead_map import lead_map
@@ -178,6 +178,23 @@ def weighed_by(evidence: Evidence, plant: Plant, quieter: bool = False) -> Evide
     return evidence.with_encoder(
         encoder_error(there, evidence.recording, evidence.band, evidence.noise, acting=telling)
     )
+
+
+def beside_machine(evidence: Evidence, plant: Plant) -> Evidence:
+    """The evidence with the encoder's error as a machine that effects have changed shows it; itself where it is alike.
+
+    A mass and a spring that are other move a resonance, and a fine encoder that shows nothing at the declared one shows
+    at the machine's: the damping is then drawn up by what its steps do there, and mass and stiffness with it.
+
+    Args:
+        evidence: weighed beside another machine.
+        plant: the machine.
+    """
+    there = weighed_by(evidence, plant, quieter=True)
+    if not isinstance(there, AxisEvidence) or not isinstance(evidence, AxisEvidence) or not evidence.gains:
+        return there
+    moved = [np.max(np.abs(gain - evidence.gains[name])) for name, gain in there.gains.items()]
+    return there if max(moved) > 0.5 * MATERIAL else evidence  # of a power the gain is the root
 
 
 def _fitted(recording: Recording, share: float) -> BoolArray:
