@@ -2,8 +2,8 @@
 
     cov = (J'J)^-1 S (J'J)^-1
 
-S, the covariance of J'r, comes from the spectrum of the residual (`noise_colour`). Two things that a spectrum cannot
-see widen a coordinate's interval:
+S, the covariance of J'r, comes from the spectrum of the residual (`noise_colour`), and along what declared values may
+do from noise and their tolerances (`_scores`). Two things that a spectrum cannot see widen a coordinate's interval:
 
 - where the residual is larger at the samples that tell of the coordinate than elsewhere (misfit at reversals), by the
   ratio of the two;
