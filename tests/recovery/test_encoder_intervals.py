@@ -12,15 +12,18 @@ from feeddrive.diagnosis.calibration.beyond import beyond_tolerance
 from feeddrive.diagnosis.calibration.calibrate import calibrated_list, with_kept
 from feeddrive.diagnosis.calibration.encoder_scores import _scores, encoder_scores
 from feeddrive.diagnosis.calibration.known import TOLERANCE
+from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence, from_zero
 from feeddrive.diagnosis.motion.encoder_error import drawn_error, told_of
 from feeddrive.diagnosis.motion.expected_motion import expected_motion
+from feeddrive.plant.file.plant_file import read_plant
+from feeddrive.recording import read_recording
 from feeddrive.recording.checks.flaws import quantisation_step
 from feeddrive.simulate.driven import motor_motion
 from feeddrive.typing import FloatArray
-from tests.recovery.fleet.case import ENCODER_NULLS
+from tests.recovery.fleet.case import ENCODER_NULLS, case
 from tests.recovery.fleet.problem import calibrated_case
 
 COARSE = ENCODER_NULLS + 14_021
@@ -113,3 +116,16 @@ def test_declared_values_settle_nowhere_worse(problem: Problem) -> None:
         return float(left @ left + known.variance * coordinates @ coordinates)
 
     assert cost(settled.coordinates) <= cost(known.coordinates + 1.0)
+
+
+@pytest.mark.slow
+def test_a_mass_that_moves_the_resonance_is_inside_its_interval(tmp_path: Path) -> None:
+    """44.7 kg at 17 bits was told as 40.3 [36.9, 43.8], the encoder's error being that at the declared resonance."""
+    drawn = case(10_262)
+    plant, fitted, judged = drawn.write(tmp_path)
+    result, _ = diagnose(read_plant(plant), [read_recording(fitted)], [read_recording(judged)])
+    (payload,) = result.effects
+    assert payload.name == "payload" and payload.parameters["mass"].ci95 is not None
+    low, high = payload.parameters["mass"].ci95
+    (planted,) = drawn.truth["planted"]
+    assert isinstance(low, float) and low < planted["values"]["mass"] < high
