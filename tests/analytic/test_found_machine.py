@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.certainty import uncertainty
+from feeddrive.diagnosis.certainty import one_sided, uncertainty
+from feeddrive.diagnosis.certainty.uncertainty import Certainty
 from feeddrive.diagnosis.likelihood.fit import MOVED, fit, fitted_to_the_end, linear_step
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion import preparing
@@ -82,3 +83,14 @@ def test_along_declared_values_scores_scatter_by_their_tolerances(monkeypatch: p
     problem.whitener = None
     alone = uncertainty._scores(problem, [], np.zeros(50), own[:, None])
     assert alone[0, 0] == pytest.approx(0.25 * 5.0)
+
+
+def test_an_end_of_an_interval_may_be_where_the_fit_is(evidence: AxisEvidence, monkeypatch: pytest.MonkeyPatch) -> None:
+    """At the end of its range a value ends there: a traceback once told no value from the one that ends."""
+    problem = Problem(axis_plant("bench"), (evidence,), AxisPredictor())
+    found = fit(problem, [EFFECTS["constant_force"].of(force=5.0)], iterations=0)
+    here = float(found.coordinates[0])
+    monkeypatch.setattr(one_sided, "one_sided", lambda problem, fitted, place: (here, 2 * here))
+    unknown = Certainty(np.array([[100.0 * here**2]]), np.ones(1))
+    (span,) = one_sided.all_intervals(problem, found, unknown)
+    assert span["force"] == [(pytest.approx(5.0), pytest.approx(10.0))]

@@ -67,8 +67,10 @@ def all_intervals(problem: Problem, fitted: Fit, known: Certainty) -> Spans:
             continue
         ends = profiled(problem, fitted, place) if of_its_own is None else one_sided(problem, fitted, place)
         if ends is not None:
-            moved = [_with(problem, fitted, at, end)[place] for end in ends]
-            (key,) = [k for k in effect.values if moved[0].values[k] != effect.values[k]]
+            other, *moved = (
+                _with(problem, fitted, at, to)[place] for to in (STEP * float(fitted.coordinates[at]), *ends)
+            )
+            (key,) = [k for k in effect.values if other.values[k] != effect.values[k]]  # an end may be where the fit is
             spans[place] = {**spans[place], key: [(number(moved[0].values[key]), number(moved[1].values[key]))]}
     return spans
 
