@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from feeddrive import __version__
-from feeddrive.diagnosis.likelihood.tolerances import ASSERTED, SURE
+from feeddrive.diagnosis.likelihood.tolerances import ASSERTED
 from feeddrive.diagnosis.plant_text import most_likely_values, with_written_values
 from feeddrive.diagnosis.responses.response_problem import (
     DELAY_SIZE,
@@ -57,7 +57,6 @@ class Found:
         log_odds: for it against leaving it out, everything else refitted, its share of the prior included.
         rivals: candidates that would have done about as well in its round.
         declared: for a declared value what the file says, as text.
-        surely_beyond: whether a declared value lies beyond its tolerance by `SURE` of its own deviations.
     """
 
     name: str
@@ -66,16 +65,11 @@ class Found:
     log_odds: float
     rivals: tuple[str, ...]
     declared: str = ""
-    surely_beyond: bool = False
 
     @property
     def asserted(self) -> bool:
-        """Whether the odds are 20 to 1 or more, or the likelier value of a part is not what its tolerance allows.
-
-        Odds alone would leave it to the tolerance's tail: a mass at 1.66 of one that is known to 1.3 has a chance in it
-        that is a tenth of that among all masses.
-        """
-        return self.log_odds >= ODDS or self.surely_beyond
+        """Whether the odds are 20 to 1 or more."""
+        return self.log_odds >= ODDS
 
 
 @dataclass(frozen=True)
@@ -176,9 +170,7 @@ def _members(problem: ResponseProblem, search: ResponseSearch) -> tuple[Found, .
         number = Parameter(value.key, value.value * math.exp(c), value.unit, ends)
         declared = format_quantity(value.value, value.unit)
         rivals = search.rivals.get(value.key, ())
-        over = abs(c) - 2 * value.deviation  # a tolerance is two deviations
-        sure = over > SURE * math.sqrt(float(fit.covariance[place, place]))
-        found.append(Found("declared_value", value.words, (number,), gains.pop(0), rivals, declared, sure))
+        found.append(Found("declared_value", value.words, (number,), gains.pop(0), rivals, declared))
     at = len(problem.values)
     if fit.lines.delay:
         seconds, reach = float(fit.coordinates[at]) * DELAY_SIZE, float(deviations[at]) * DELAY_SIZE
