@@ -131,7 +131,8 @@ def _made(
     scale = radius if to_travel else 1 / radius if to_angle and table.breakpoint_unit != "rad" else 1.0
     at, period = scale * at, scale * period
     place = f"periodic_{word}" if period else word
-    given = {word: tuple(rounded(at, _shortest(at))), key or kind.value_keys[0]: tuple(values.tolist())}
+    shown = rounded(values, float(np.abs(values).max()))
+    given = {word: tuple(rounded(at, _shortest(at))), key or kind.value_keys[0]: tuple(shown)}
     return kind.of(port, place, **given, **({"period": period} if period else {}))
 
 
