@@ -30,6 +30,29 @@ def test_a_bristle_beside_friction_that_drops_with_speed(force: float) -> None:
     assert named["presliding"]["stiffness"].value == pytest.approx(3.0e6, rel=0.05)
 
 
+@pytest.mark.parametrize(("slope", "seeds"), [(3e-5, (53, 54)), (-1.2e-5, (55, 56))])
+def test_a_lead_error_beside_growth_is_no_form_of_the_growth(slope: float, seeds: tuple[int, int]) -> None:
+    """Both are of many times the noise: what is left beside the curve of one is told at the weights of both."""
+    growth = planted.ThermalGrowth(strain=2.5e-5, time_constant=5.0)
+    fitted, judged = recordings("light", planted.LeadErrorCumulative(slope=slope), growth, seeds=seeds)
+    found, _ = diagnose(axis_plant("light"), [fitted], [judged])
+    named = {one.name: one.parameters for one in found.effects}
+    assert set(named) == {"lead_error_cumulative", "thermal_growth"}
+    # the intervals are of 0.1 and 0.4 %; simulation and package share no code
+    assert named["lead_error_cumulative"]["slope"].value == pytest.approx(slope, rel=0.005)
+    assert named["thermal_growth"]["time_constant"].value == pytest.approx(5.0, rel=0.02)
+
+
+def test_a_delay_that_would_be_negative_takes_no_place() -> None:
+    """What comes late of the table's scale is as if the motor's angle came early, which no recorder does."""
+    fitted, judged = recordings("light", planted.ChannelDelay("table_position", 5e-8), seeds=(57, 58))
+    found, _ = diagnose(axis_plant("light"), [fitted], [judged])
+    (one,) = found.effects
+    assert (one.name, one.parameters["channel"].value) == ("channel_delay", "table_position")
+    # three deviations of 2.6 ns, the best that any unbiased estimate has here
+    assert one.parameters["delay"].value == pytest.approx(5e-8, abs=8e-9)
+
+
 @pytest.mark.parametrize(("factor", "named"), [(0.7, True), (1.0, False)])
 def test_a_softer_spring_is_asked_of_a_plant_whose_values_are_exact(factor: float, named: bool) -> None:
     """Every other value is beyond what is declared; whether it is another the recordings tell."""

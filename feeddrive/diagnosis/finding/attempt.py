@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -11,6 +12,7 @@ from feeddrive.diagnosis.finding.scene import Candidate, Scene, scene_of
 from feeddrive.diagnosis.likelihood.coordinates import (
     absent_coordinates,
     at_an_end,
+    at_its_limit,
     coordinate_ends,
     read_coordinates,
     write_coordinates,
@@ -29,6 +31,7 @@ from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.diagnosis.starts.residual_readings import BINS
 from feeddrive.effects.base import Effect, FrictionEffect, number
+from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.effects.friction.viscous_warmup import ViscousWarmup
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
@@ -203,17 +206,23 @@ def _usable(scene: Scene, problem: Problem, name: str, result: Fit) -> Attempt:
 
 
 def refuse_at_an_end(problem: Problem, effects: Sequence[Effect]) -> None:
-    """Refuse a friction of which a value has run to the end of its range: judging would deny it.
+    """Refuse a friction of which a value has run to an end of its range, and a mode that does not swing once.
 
-    A bristle that gives way by a picometre is a sign of the velocity, and takes minutes to simulate. Other laws become
-    known ones at their ends (`spring_law`, `as_payload`), which the search asks.
+    Judging would deny both. A bristle that gives way by a picometre is a sign of the velocity, and takes minutes to
+    simulate; a warm-up that is over at once is another viscous friction; a mode of a period longer than the recording
+    drags at the table as a damper does. Other laws become known ones at their ends (`spring_law`, `as_payload`), which
+    the search asks.
 
     Raises:
         InputError: there is such an effect.
     """
     for effect in effects:
-        if isinstance(effect, FrictionEffect) and at_an_end(effect, problem.plant):
+        if isinstance(effect, FrictionEffect) and (at_an_end(effect, problem.plant) or at_its_limit(effect)):
             raise InputError(f"{effect.name} has run to the end of what is physical", effect.name)
+        if isinstance(effect, StructuralMode):
+            longest = max((e.recording.duration for e in problem.evidence), default=math.inf)
+            if number(effect.values["frequency"]) * longest < 1:
+                raise InputError(f"{effect.name} has a longer period than any recording", effect.name)
 
 
 def refuse_of_no_hours(problem: Problem, effects: Sequence[Effect]) -> None:

@@ -24,7 +24,7 @@ from feeddrive.diagnosis.finding.open_map import (
     with_curves_anew,
     with_curves_of,
 )
-from feeddrive.diagnosis.finding.refitting import refitted
+from feeddrive.diagnosis.finding.refitting import balanced, refitted
 from feeddrive.diagnosis.finding.round import Round
 from feeddrive.diagnosis.friction_at_port import declared_level
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
@@ -99,6 +99,10 @@ def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
     """
     effects, added = taken.fit.effects, len(taken.names)
     problem = with_curves_of(taken.problem, effects)
+    if not has_curve(effects):
+        return None
+    problem, named = balanced(problem, fit(problem, effects, iterations=JOINT_ITERATIONS))
+    effects = named.effects
     able: list[tuple[OfNoName, tuple[Problem, Fit]]] = []
     first = len(effects) - added
     singly = [[place] for place in range(first, len(effects))]
@@ -107,9 +111,9 @@ def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
         if has_curve(rest) and not has_play([effects[i] for i in gone]):
             without = fit(problem, rest, iterations=JOINT_ITERATIONS)
             curve, opened = likeliest_curve(problem, without, count)
-            likelier = curve.odds > log_odds(problem, without, taken.fit, count)
+            likelier = curve.odds > log_odds(problem, without, named, count)
             there = fit(opened, rest, iterations=JOINT_ITERATIONS)
-            if likelier and _leaves_less(Standing(opened, there), Standing(taken.problem, taken.fit)):
+            if likelier and _leaves_less(Standing(opened, there), Standing(problem, named)):
                 able.append((curve, (opened, without)))
     if not able:
         return None

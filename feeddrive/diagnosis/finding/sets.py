@@ -25,7 +25,7 @@ import numpy as np
 
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.finding.attempt import Attempt
-from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
+from feeddrive.diagnosis.likelihood.coordinates import coordinate_ends, read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import (
@@ -205,6 +205,29 @@ def _not_told(normal: FloatArray, scatter: FloatArray, step: FloatArray, length:
     return part
 
 
+def _within(
+    normal: FloatArray, wanted: FloatArray, step: FloatArray, low: FloatArray, high: FloatArray
+) -> FloatArray:  # fmt: skip
+    """A step, (k,), that no coordinate leaves its range by: those at an end stay there, the others are solved anew.
+
+    A delay that would have to be negative explains as much as the delay of another channel, and is none.
+
+    Args:
+        normal, wanted: of the normal equations, (k, k) and (k,).
+        step: their solution, or what is told of it, (k,).
+        low, high: farthest steps to the ends of what is physical, (k,); none beyond where a coordinate is.
+    """
+    low, high = np.minimum(low, 0.0), np.maximum(high, 0.0)
+    held = np.zeros(len(step), dtype=bool)
+    while np.any(beyond := ~held & ((step < low) | (step > high))):
+        step = np.where(beyond, np.clip(step, low, high), step)
+        held |= beyond
+        free = ~held
+        there = wanted[free] - normal[np.ix_(free, held)] @ step[held]
+        step[free] = np.linalg.lstsq(normal[np.ix_(free, free)], there, rcond=1e-10)[0]
+    return step
+
+
 class _Columns:
     """All columns of the sets near one, and their products.
 
@@ -227,6 +250,12 @@ class _Columns:
             self.first_own.append(at)
             at += 1 + fitted.jacobian.shape[1]
         columns = np.hstack(parts)
+        # ends of what is physical, of every column that has a coordinate
+        self.low, self.high = np.full(columns.shape[1], -np.inf), np.full(columns.shape[1], np.inf)
+        own = ((at + 1, fitted.effects[-1:]) for at, fitted in zip(self.first_own, self.own, strict=True))
+        for first, effects in ((0, found.effects), *own):
+            low, high = coordinate_ends(effects, problem.plant)
+            self.low[first : first + len(low)], self.high[first : first + len(high)] = low, high
         # a member that cannot be left out, or a slope that no number can hold, is no way to go
         self.able = np.all(np.isfinite(columns), axis=0)
         self.columns = np.where(self.able, columns, 0.0)
@@ -267,7 +296,9 @@ class _Columns:
             scale, own = np.outer(length, length), np.ix_(places, places)
             normal, scatter = self.products[own] / scale, self.scatter[own] / scale
             step = np.linalg.lstsq(normal, wanted / length, rcond=1e-10)[0]
-            taken[places] = (step - _not_told(normal, scatter, step, length)) / length
+            step -= _not_told(normal, scatter, step, length)
+            room = [(ends[places] - start) * length for ends in (self.low, self.high)]
+            taken[places] = _within(normal, wanted / length, step, *room) / length
         if not np.all(self.able[fixed]):
             taken[:] = np.nan
         return taken, places, effects, np.array(start) + taken[places]
