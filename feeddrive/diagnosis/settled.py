@@ -10,6 +10,7 @@ from feeddrive.diagnosis.calibration.calibrate import levelled_alike, weighed_al
 from feeddrive.diagnosis.certainty.ambiguity import Rival, rivals_of
 from feeddrive.diagnosis.certainty.inclusion import asserted
 from feeddrive.diagnosis.certainty.preferred import judged_apart, judged_as_good, with_the_preferred
+from feeddrive.diagnosis.finding.elsewhere import at_likelier_place
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.denied_again import settled_names
 from feeddrive.diagnosis.judging.judge import Judged, prepared_for_judging
@@ -82,20 +83,7 @@ def settle(begun: Begun, simulate: bool, progress: Progress, start: Sequence[Eff
         return _judged(other, evidence)[0]
 
     found, judged = settled_names(found, judged, judge, progress)
-    rivals = rivals_of(found, judged)
-    preferred, ranked = with_the_preferred(found, rivals)
-    put_in = judged if preferred is found else judge(preferred)
-    if preferred is not found and judged_as_good(found.problem, judged, put_in):
-        new = _names(preferred) - _names(found)
-        kept, after = without_denied(
-            preferred, put_in, judge, () if judged_apart(found.problem, judged, put_in) else new
-        )
-        denied = new - _names(kept)
-        if denied:  # what its own evidence denies takes no place: what was taken stands
-            rivals = [[rival for rival in alike if rival.effect.name not in denied] for alike in rivals]
-        else:
-            found, judged = kept, after
-            rivals = ranked if kept is preferred else rivals_of(kept, after)
+    found, judged, rivals = _with_preferred_names(found, judged, rivals_of(found, judged), judge)
     sure = asserted(found)
     if sure is not found:
         found, judged = sure, judge(sure)
@@ -115,6 +103,30 @@ def settle(begun: Begun, simulate: bool, progress: Progress, start: Sequence[Eff
     if changes is not None:  # beside the declared values of the names that are left
         changes = replace(changes, problem=found.problem, fit=found.fit)
     return Settled(Searched(found, changes), rivals, judged, rehomed, refinement, weighed)
+
+
+def _with_preferred_names(
+    found: Search, judged: list[Judged], rivals: list[list[Rival]], judge: Callable[[Search], list[Judged]]
+) -> tuple[Search, list[Judged], list[list[Rival]]]:
+    """The search with a name replaced that has a rival to be preferred, each at its likeliest place; else as it is.
+
+    What its own evidence denies takes no place: what was taken stands.
+    """
+    preferred, ranked = with_the_preferred(found, rivals)
+    if preferred is found:
+        return found, judged, rivals
+    put_in = judge(preferred)
+    if not judged_as_good(found.problem, judged, put_in):
+        return found, judged, rivals
+    new = _names(preferred) - _names(found)
+    kept, after = without_denied(preferred, put_in, judge, () if judged_apart(found.problem, judged, put_in) else new)
+    if denied := new - _names(kept):
+        return found, judged, [[rival for rival in alike if rival.effect.name not in denied] for alike in rivals]
+    placed = at_likelier_place(kept.problem, kept.fit, kept.count)
+    if placed is not None:
+        kept = replace(kept, problem=placed[0], fit=placed[1])
+        after = judge(kept)
+    return kept, after, ranked if kept is preferred else rivals_of(kept, after)
 
 
 def _names(found: Search) -> set[str]:

@@ -43,6 +43,21 @@ def test_a_lead_error_beside_growth_is_no_form_of_the_growth(slope: float, seeds
     assert named["thermal_growth"]["time_constant"].value == pytest.approx(5.0, rel=0.02)
 
 
+@pytest.mark.parametrize("seeds", [(63, 64), (65, 66)])
+def test_a_drag_at_the_table_is_no_drag_at_the_screw_beside_a_late_scale(seeds: tuple[int, int]) -> None:
+    """At another place of one effect another one says nothing any more."""
+    softer = planted.StiffnessDeviation(factor=1.08)
+    drag = planted.FrictionDeviation(port="table", viscous_factor=1.07)
+    fitted, judged = recordings("light", softer, drag, seeds=seeds)
+    found, effects = diagnose(axis_plant("light"), [fitted], [judged])
+    assert {(one.name, str(one.port)) for one in effects} >= {("friction_deviation", "table")}
+    named = {one.name: one.parameters for one in found.effects}
+    assert set(named) == {"stiffness_deviation", "friction_deviation"}
+    # five deviations of what the intervals tell, 0.002 and 0.003
+    assert named["stiffness_deviation"]["factor"].value == pytest.approx(1.08, abs=0.01)
+    assert named["friction_deviation"]["viscous_factor"].value == pytest.approx(1.07, abs=0.015)
+
+
 def test_a_delay_that_would_be_negative_takes_no_place() -> None:
     """What comes late of the table's scale is as if the motor's angle came early, which no recorder does."""
     fitted, judged = recordings("light", planted.ChannelDelay("table_position", 5e-8), seeds=(57, 58))

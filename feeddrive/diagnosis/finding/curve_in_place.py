@@ -94,6 +94,9 @@ def of_its_own_form(problem: Problem, found: Fit, taken: Taken, count: int) -> t
 def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
     """A likelier set without one or all names that it adds, where the curve of another of its laws is likelier.
 
+    Each channel weighs by what the likelier set leaves: where what it explains is many times the noise, channels still
+    weighed by that hardly tell whether a curve reaches it as well.
+
     Of several the likeliest, over one variance: what is left beside a law far from its own form has another colour than
     beside one that is near, and odds over either are none between the two.
     """
@@ -133,7 +136,8 @@ def _of_rival_form(problem: Problem, taken: Taken, now: Round) -> tuple[Problem,
     Far from its own form a law takes less than two others that share what it does: a friction of two directions that
     takes some speed was told as one that grows with it and a Stribeck drop. So the other law is begun as large as the
     one that is added, and has declared values and a curve of its own, before the two are held against each other. The
-    likeliest set has the curve of one of its laws as well, where one is likely, and both are over one variance.
+    likeliest set has the curve of one of its laws as well, where one is likely, and both are over one variance, of
+    channels weighed alike.
     """
     if _is_noise(taken.problem, taken.fit):
         return None
@@ -155,8 +159,10 @@ def _of_rival_form(problem: Problem, taken: Taken, now: Round) -> tuple[Problem,
     if not able:
         return None
     curve, opened, plain = min(able, key=lambda one: one[0].left)
-    own, _ = likeliest_curve(taken.problem, taken.fit, now.count)
-    named = min(own.left, taken.fit.squared_error) if own.odds > 0 else taken.fit.squared_error
+    alike = taken.problem.weighed(opened.evidence[0].left)
+    there = fit(alike, taken.fit.effects, iterations=0 if alike is taken.problem else JOINT_ITERATIONS)
+    own, _ = likeliest_curve(alike, there, now.count)
+    named = min(own.left, there.squared_error) if own.odds > 0 else there.squared_error
     spared = log_prior_of_size(len(plain.effects), now.count) - log_prior_of_size(len(taken.fit.effects), now.count)
     if 0.5 * (named - curve.left) / curve.variance + spared <= 0:
         return None

@@ -10,6 +10,7 @@ from __future__ import annotations
 from feeddrive.diagnosis.calibration.stated import given_back
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.refitting import refitted
+from feeddrive.diagnosis.finding.sets import members_weighed
 from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
@@ -67,6 +68,8 @@ def _other_part(effect: StiffnessDeviation, place: str, plant: Plant) -> Effect:
 def at_likelier_place(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit] | None:
     """A set with one of its effects at the place that makes the recordings likeliest; None where all are there.
 
+    At another place another effect of the set may say nothing any more, and leaves it.
+
     Where an effect says that a fitted declared value is other, the question which value it is has its own answer
     (`calibration.beyond`).
 
@@ -92,10 +95,23 @@ def at_likelier_place(problem: Problem, found: Fit, count: int) -> tuple[Problem
                 continue
             if not same_samples(there[0], problem) or not there[0].possible(there[1].effects):
                 continue
-            odds = odds_between(Standing(problem, found), Standing(*there), count)
-            if odds > best:
-                best, chosen = odds, there
+            for one in (Standing(*there), *_without_one(Standing(*there), count)):
+                odds = odds_between(Standing(problem, found), one, count)
+                if odds > best:
+                    best, chosen = odds, (one.problem, one.fit)
     return chosen
+
+
+def _without_one(there: Standing, count: int) -> list[Standing]:
+    """The sets without one of the other members that the data are likelier without, as far as slopes tell.
+
+    What one effect leaves at the wrong place another may have taken: a drag at the screw, and a table position that
+    comes late, are together a drag at the table.
+    """
+    problem, effects = there.problem, there.fit.effects
+    gains = [one.gain for one in members_weighed(problem, there.fit, count)] if len(effects) > 1 else []
+    rest = [[*effects[:place], *effects[place + 1 :]] for place, gain in enumerate(gains) if gain > 0]
+    return [Standing(*refitted(problem, fit(problem, some, iterations=JOINT_ITERATIONS))) for some in rest]
 
 
 def _states_a_value(problem: Problem, effect: Effect) -> bool:
