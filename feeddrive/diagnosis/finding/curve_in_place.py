@@ -159,12 +159,12 @@ def _of_rival_form(problem: Problem, taken: Taken, now: Round) -> tuple[Problem,
     if not able:
         return None
     curve, opened, plain = min(able, key=lambda one: one[0].left)
-    alike = taken.problem.weighed(opened.evidence[0].left)
-    there = fit(alike, taken.fit.effects, iterations=0 if alike is taken.problem else JOINT_ITERATIONS)
-    own, _ = likeliest_curve(alike, there, now.count)
-    named = min(own.left, there.squared_error) if own.odds > 0 else there.squared_error
+    weighed = taken.problem.weighed(opened.evidence[0].left)
+    named = fit(weighed, taken.fit.effects, iterations=0 if weighed is taken.problem else JOINT_ITERATIONS)
+    own, _ = likeliest_curve(weighed, named, now.count)
+    left = min(own.left, named.squared_error) if own.odds > 0 else named.squared_error
     spared = log_prior_of_size(len(plain.effects), now.count) - log_prior_of_size(len(taken.fit.effects), now.count)
-    if 0.5 * (named - curve.left) / curve.variance + spared <= 0:
+    if 0.5 * (left - curve.left) / curve.variance + spared <= 0:
         return None
     there = fit(opened, plain.effects, iterations=JOINT_ITERATIONS)
     return (opened, there) if _leaves_less(Standing(opened, there), Standing(taken.problem, taken.fit)) else None

@@ -7,7 +7,7 @@ that a search finds once is no candidate any more, so that its other places are 
 
 from __future__ import annotations
 
-from feeddrive.diagnosis.calibration.stated import given_back
+from feeddrive.diagnosis.calibration.stated import given_back, without_effects
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.refitting import refitted
 from feeddrive.diagnosis.finding.sets import members_weighed
@@ -90,12 +90,13 @@ def at_likelier_place(problem: Problem, found: Fit, count: int) -> tuple[Problem
                 continue
             effects = (*found.effects[:place], other, *found.effects[place + 1 :])
             try:
-                there = refitted(problem, fit(problem, effects, iterations=JOINT_ITERATIONS))
+                there = Standing(*refitted(problem, fit(problem, effects, iterations=JOINT_ITERATIONS)))
+                if not same_samples(there.problem, problem) or not there.problem.possible(there.fit.effects):
+                    continue
+                fewer = _without_one(there, count)
             except InputError:
                 continue
-            if not same_samples(there[0], problem) or not there[0].possible(there[1].effects):
-                continue
-            for one in (Standing(*there), *_without_one(Standing(*there), count)):
+            for one in (there, *fewer):
                 odds = odds_between(Standing(problem, found), one, count)
                 if odds > best:
                     best, chosen = odds, (one.problem, one.fit)
@@ -108,10 +109,14 @@ def _without_one(there: Standing, count: int) -> list[Standing]:
     What one effect leaves at the wrong place another may have taken: a drag at the screw, and a table position that
     comes late, are together a drag at the table.
     """
-    problem, effects = there.problem, there.fit.effects
+    problem, effects, result = there.problem, there.fit.effects, []
     gains = [one.gain for one in members_weighed(problem, there.fit, count)] if len(effects) > 1 else []
-    rest = [[*effects[:place], *effects[place + 1 :]] for place, gain in enumerate(gains) if gain > 0]
-    return [Standing(*refitted(problem, fit(problem, some, iterations=JOINT_ITERATIONS))) for some in rest]
+    for place, gain in enumerate(gains):
+        if gain > 0:
+            rest = [*effects[:place], *effects[place + 1 :]]
+            given = without_effects(problem, [effects[place]], rest)
+            result.append(Standing(*refitted(given, fit(given, rest, iterations=JOINT_ITERATIONS))))
+    return result
 
 
 def _states_a_value(problem: Problem, effect: Effect) -> bool:
