@@ -114,7 +114,7 @@ def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
         if has_curve(rest) and not has_play([effects[i] for i in gone]):
             without = fit(problem, rest, iterations=JOINT_ITERATIONS)
             curve, opened = likeliest_curve(problem, without, count)
-            likelier = curve.odds > log_odds(problem, without, named, count)
+            likelier = curve.odds > log_odds(problem, without, named, count, variance=curve.variance)
             there = fit(opened, rest, iterations=JOINT_ITERATIONS)
             if likelier and _leaves_less(Standing(opened, there), Standing(problem, named)):
                 able.append((curve, (opened, without)))

@@ -171,7 +171,7 @@ def prior_middle(effects: Sequence[Effect], plant: Plant) -> FloatArray:
 
 def log_odds(
     problem: Problem, first: Fit, second: Fit, count: int, beyond: float = 0.0, of_first: Problem | None = None,
-    encoder: float = 0.0,
+    encoder: float = 0.0, variance: float | None = None,
 ) -> float:  # fmt: skip
     """Logarithm of the odds for the second of two sets, all of whose effects are fitted to the same samples.
 
@@ -183,11 +183,13 @@ def log_odds(
         beyond: squared error of the first less that of the second on samples that one of them alone predicts.
         of_first: with the declared values that the first stands beside, where those are others.
         encoder: v, where it was simulated.
+        variance: c but for v, where the pair is held against what is over that; else that of the pair.
     """
     excess = first.squared_error - second.squared_error + beyond
     if not np.isfinite(excess):
         return float("inf") if excess > 0 else float("-inf")
-    variance = variance_along(problem, min((first, second), key=lambda one: one.squared_error), first, second)
+    if variance is None:
+        variance = variance_along(problem, min((first, second), key=lambda one: one.squared_error), first, second)
     variance += encoder
     sets = [
         log_volume(one.effects, problem.plant, one.coordinates, one.jacobian.T @ one.jacobian, variance)
