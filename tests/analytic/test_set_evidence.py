@@ -16,7 +16,8 @@ from scipy.ndimage import uniform_filter1d
 from feeddrive.diagnosis.calibration.calibration import whitener
 from feeddrive.diagnosis.certainty.rival_odds import Residuals, odds_and_distance
 from feeddrive.diagnosis.finding.attempt import Attempt
-from feeddrive.diagnosis.finding.sets import Neighbour, _not_told, members_weighed, neighbours
+from feeddrive.diagnosis.finding.columns import Neighbour, not_told
+from feeddrive.diagnosis.finding.sets import members_weighed, neighbours
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
 from feeddrive.diagnosis.likelihood.set_evidence import (
@@ -339,7 +340,7 @@ def test_a_step_goes_no_further_than_a_size_where_it_gains_less_than_the_prior_t
     normal = columns.T @ columns / np.outer(length, length)
     for true in (np.array([3.0, 3.0]), np.array([4000.0, -3994.0])):
         step = np.linalg.solve(normal, columns.T @ (columns @ true + noise) / length)
-        kept = (step - _not_told(normal, normal, step, length)) / length  # white noise of one
+        kept = (step - not_told(normal, normal, step, length)) / length  # white noise of one
         assert kept.sum() == pytest.approx(6.0, abs=5 / np.sqrt(ROWS))  # five deviations of the sum's noise
         # a difference of 7994 makes 0.4 deviations a row, known to 2.3 % by ROWS of them: five deviations of that; one
         # of none is left where it was, but for what the columns' lengths differ by, 1e-6 of the sum

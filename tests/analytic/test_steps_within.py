@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from feeddrive.diagnosis.finding.sets import _within
+from feeddrive.diagnosis.finding.columns import within
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -19,7 +19,7 @@ def test_with_one_coordinate_at_its_end_the_others_are_solved_anew(seed: int) ->
     low, high = np.full(4, -np.inf), np.full(4, np.inf)
     (high if step[2] > 0 else low)[2] = 0.5 * step[2]
     exact = lsq_linear(columns, target, bounds=(low, high), tol=1e-14).x
-    np.testing.assert_allclose(_within(normal, wanted, step, low, high), exact, rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(within(normal, wanted, step, low, high), exact, rtol=1e-6, atol=1e-9)
 
 
 def test_no_coordinate_leaves_its_range() -> None:
@@ -29,7 +29,7 @@ def test_no_coordinate_leaves_its_range() -> None:
         columns, target = rng.standard_normal((20, 5)), 3 * rng.standard_normal(20)
         normal, wanted = columns.T @ columns, columns.T @ target
         low, high = -rng.uniform(0, 1, 5), rng.uniform(0, 1, 5)
-        there = _within(normal, wanted, np.linalg.solve(normal, wanted), low, high)
+        there = within(normal, wanted, np.linalg.solve(normal, wanted), low, high)
         assert np.all(there >= low - 1e-12) and np.all(there <= high + 1e-12)
 
 
@@ -37,4 +37,4 @@ def test_a_step_within_its_range_stays_as_it_is() -> None:
     """No end is near."""
     step = np.array([1.0, -2.0])
     ends = np.full(2, np.inf)
-    np.testing.assert_array_equal(_within(np.eye(2), step, step, -ends, ends), step)
+    np.testing.assert_array_equal(within(np.eye(2), step, step, -ends, ends), step)
