@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.finding.along_the_stroke import _as_compliant
+from feeddrive.diagnosis.forms.along_the_stroke import _as_compliant
 from feeddrive.effects.base import number
 from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.plant.file.plant_file import read_plant

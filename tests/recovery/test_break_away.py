@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from feeddrive.diagnosis.finding.bristle_form import of_likelier_bristle
+from feeddrive.diagnosis.forms.bristle_form import of_likelier_bristle
 from feeddrive.diagnosis.likelihood.coordinates import at_an_end, read_coordinates
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem

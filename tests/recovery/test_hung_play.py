@@ -8,7 +8,7 @@ import pytest
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.certainty.one_sided import OPEN, all_intervals, one_sided, with_usual_sizes
 from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
-from feeddrive.diagnosis.finding.spring_law import play_from_declared
+from feeddrive.diagnosis.forms.spring_law import play_from_declared
 from feeddrive.diagnosis.judging.asked_of_fit import sizes_around_none
 from feeddrive.diagnosis.judging.result import ParameterResult
 from feeddrive.diagnosis.likelihood.fit import fit

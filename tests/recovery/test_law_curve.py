@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.finding.curve_in_place import of_its_own_form, of_no_name
 from feeddrive.diagnosis.finding.likelier import Taken
-from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_curves, with_curves_anew, with_curves_of
 from feeddrive.diagnosis.finding.round import one_round
 from feeddrive.diagnosis.finding.scene import scene_of
+from feeddrive.diagnosis.forms.curve_in_place import of_its_own_form, of_no_name
+from feeddrive.diagnosis.forms.open_map import likeliest_curve, log_odds_of_curves, with_curves_anew, with_curves_of
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.law_curve import STEPS, law_curves
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem

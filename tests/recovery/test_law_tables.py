@@ -9,9 +9,9 @@ import pytest
 
 from feeddrive.diagnosis.certainty.inclusion import _odds_of_curves
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.finding.curve_in_place import with_its_curves
-from feeddrive.diagnosis.finding.open_map import likeliest_curve, open_curves
 from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.forms.curve_in_place import with_its_curves
+from feeddrive.diagnosis.forms.open_map import likeliest_curve, open_curves
 from feeddrive.diagnosis.judging.judge import prepared_for_judging
 from feeddrive.diagnosis.judging.law_tables import without_tables
 from feeddrive.diagnosis.likelihood.fit import fit

@@ -17,9 +17,9 @@ from feeddrive.diagnosis.certainty.one_sided import all_intervals
 from feeddrive.diagnosis.certainty.profile import profiled
 from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.finding.curve_in_place import with_level_in_curve
-from feeddrive.diagnosis.finding.flank import with_curve_for_flank
 from feeddrive.diagnosis.finding.refitting import refitted, with_value_beyond
+from feeddrive.diagnosis.forms.curve_in_place import with_level_in_curve
+from feeddrive.diagnosis.forms.flank import with_curve_for_flank
 from feeddrive.diagnosis.judging.asked_of_fit import sizes_around_none
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem

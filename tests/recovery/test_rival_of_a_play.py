@@ -13,7 +13,7 @@ from feeddrive.diagnosis.certainty.imitations import imitations_of
 from feeddrive.diagnosis.certainty.rival_odds import Residuals
 from feeddrive.diagnosis.finding.attempt import with_predictable
 from feeddrive.diagnosis.finding.search import Search
-from feeddrive.diagnosis.finding.spring_law import from_declared
+from feeddrive.diagnosis.forms.spring_law import from_declared
 from feeddrive.diagnosis.judging.judge import prepared_for_judging
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.set_evidence import regained, same_samples

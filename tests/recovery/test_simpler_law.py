@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.finding.scene import scene_of
-from feeddrive.diagnosis.finding.simpler_law import (
+from feeddrive.diagnosis.forms.simpler_law import (
     as_force,
     less_than_a_period,
     level_everywhere,

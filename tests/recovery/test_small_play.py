@@ -9,7 +9,7 @@ import pytest
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated, recalibrated
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.finding.spring_law import with_likelier_law
+from feeddrive.diagnosis.forms.spring_law import with_likelier_law
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem

@@ -13,8 +13,8 @@ import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.scene import scene_of
-from feeddrive.diagnosis.finding.simpler_law import as_payload
-from feeddrive.diagnosis.finding.spring_law import odds_between
+from feeddrive.diagnosis.forms.simpler_law import as_payload
+from feeddrive.diagnosis.forms.spring_law import odds_between
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing

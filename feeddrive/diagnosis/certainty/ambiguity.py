@@ -25,8 +25,8 @@ from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.finding.elsewhere import elsewhere, where
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import odds_of_member
-from feeddrive.diagnosis.finding.simpler_law import highest_seen
-from feeddrive.diagnosis.finding.spring_law import hardly_carrying
+from feeddrive.diagnosis.forms.simpler_law import highest_seen
+from feeddrive.diagnosis.forms.spring_law import hardly_carrying
 from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
 from feeddrive.diagnosis.likelihood.fit import Fit, fit

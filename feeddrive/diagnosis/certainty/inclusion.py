@@ -23,10 +23,10 @@ from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.likelier import Near
 from feeddrive.diagnosis.finding.members import members_of
-from feeddrive.diagnosis.finding.open_map import log_odds_of_curves, open_curves, with_curves_of
 from feeddrive.diagnosis.finding.refitting import at_rest, to_rest
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import SURE, members_weighed
+from feeddrive.diagnosis.forms.open_map import log_odds_of_curves, open_curves, with_curves_of
 from feeddrive.diagnosis.judging.result import PossibleEffect
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between

@@ -6,9 +6,9 @@ from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.materiality import is_material_here
 from feeddrive.diagnosis.finding.members import rest_of
-from feeddrive.diagnosis.finding.open_map import with_curves_of
 from feeddrive.diagnosis.finding.refitting import at_rest, in_steps_told, refitted, where_friction_brakes
 from feeddrive.diagnosis.finding.too_small import is_seen
+from feeddrive.diagnosis.forms.open_map import with_curves_of
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing

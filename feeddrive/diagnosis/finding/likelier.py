@@ -15,10 +15,10 @@ from feeddrive.diagnosis.finding.attempt import (
     refuse_of_no_hours,
 )
 from feeddrive.diagnosis.finding.columns import Neighbour
-from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_curves, with_curves_of
 from feeddrive.diagnosis.finding.round import Round
 from feeddrive.diagnosis.finding.sets import neighbours
-from feeddrive.diagnosis.finding.spring_law import LAWS, play_from_declared, with_likelier_law
+from feeddrive.diagnosis.forms.open_map import likeliest_curve, log_odds_of_curves, with_curves_of
+from feeddrive.diagnosis.forms.spring_law import LAWS, play_from_declared, with_likelier_law
 from feeddrive.diagnosis.likelihood.fit import Fit, error_of, fit
 from feeddrive.diagnosis.likelihood.problem import LEVEL, UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between, regained, same_samples

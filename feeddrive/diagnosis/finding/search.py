@@ -18,21 +18,11 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated, moved
 from feeddrive.diagnosis.calibration.stated import without_effects
 from feeddrive.diagnosis.calibration.value_slopes import ENOUGH
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
-from feeddrive.diagnosis.finding.along_the_stroke import with_declared_stiffness, with_parabola_from_line
 from feeddrive.diagnosis.finding.attempt import Attempt
-from feeddrive.diagnosis.finding.bristle_form import of_likelier_bristle
-from feeddrive.diagnosis.finding.curve_in_place import (
-    curve_of_value,
-    of_no_name,
-    with_its_curves,
-    with_level_in_curve,
-)
 from feeddrive.diagnosis.finding.elsewhere import at_likelier_place
 from feeddrive.diagnosis.finding.end_of_search import ended
-from feeddrive.diagnosis.finding.flank import with_curve_for_flank
 from feeddrive.diagnosis.finding.likelier import Near, Taken, likelier, of_likelier_law, with_play
 from feeddrive.diagnosis.finding.members import Member, members_of, rest_of
-from feeddrive.diagnosis.finding.open_map import open_curves, with_curves_of
 from feeddrive.diagnosis.finding.refitting import (
     at_rest,
     balanced,
@@ -48,16 +38,26 @@ from feeddrive.diagnosis.finding.refitting import (
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.short_step import with_values_moved
-from feeddrive.diagnosis.finding.simpler_law import (
+from feeddrive.diagnosis.finding.too_small import too_small
+from feeddrive.diagnosis.finding.two_at_once import two_at_once
+from feeddrive.diagnosis.forms.along_the_stroke import with_declared_stiffness, with_parabola_from_line
+from feeddrive.diagnosis.forms.bristle_form import of_likelier_bristle
+from feeddrive.diagnosis.forms.curve_in_place import (
+    curve_of_value,
+    of_no_name,
+    with_its_curves,
+    with_level_in_curve,
+)
+from feeddrive.diagnosis.forms.flank import with_curve_for_flank
+from feeddrive.diagnosis.forms.open_map import open_curves, with_curves_of
+from feeddrive.diagnosis.forms.simpler_law import (
     as_force,
     as_payload,
     less_than_a_period,
     level_everywhere,
     without_resonance,
 )
-from feeddrive.diagnosis.finding.spring_law import soft_everywhere
-from feeddrive.diagnosis.finding.too_small import too_small
-from feeddrive.diagnosis.finding.two_at_once import two_at_once
+from feeddrive.diagnosis.forms.spring_law import soft_everywhere
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison

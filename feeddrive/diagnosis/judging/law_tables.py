@@ -13,9 +13,9 @@ from dataclasses import replace
 
 from feeddrive.diagnosis.calibration.calibrate import with_kept
 from feeddrive.diagnosis.finding.members import members_of
-from feeddrive.diagnosis.finding.open_map import open_curves, with_curves_of
 from feeddrive.diagnosis.finding.refitting import refitted
 from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.forms.open_map import open_curves, with_curves_of
 from feeddrive.diagnosis.judging.judge import Judged, channel_results, judged_residual, shifted
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem

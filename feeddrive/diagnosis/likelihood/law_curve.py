@@ -20,7 +20,7 @@ once: exp(-x) and 1 / (1 + x) are mixtures of exp(-x^2) of other scales, and two
 A law may be as large as it likes: what lies along s is taken out of every column.
 
 Where such a curve is likelier than the likeliest further name, comparisons are without it from there on
-(`finding.open_map`), as long as the law is in the set. Once the names are found all of it counts again.
+(`forms.open_map`), as long as the law is in the set. Once the names are found all of it counts again.
 
 Source: Kennedy and O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (discrepancy of a model).
 """

@@ -2,7 +2,7 @@
 
 Every screw has one beside the line: ISO 3408-3 allows 23 µm of it within 300 mm in class 5, 52 µm in class 7. No name
 of a law says it, and what is left of it makes others look needed: an asymmetry, a stiffness along the stroke. So where
-it is likelier than every name (`finding.open_map`), comparisons are without
+it is likelier than every name (`forms.open_map`), comparisons are without
 
     P_k(s) - a - b s,   k = 2, 3;   s = (2 x - x_max - x_min) / (x_max - x_min)
 

@@ -14,7 +14,7 @@ from feeddrive.diagnosis.calibration.stated import said_by_effects
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.refitting import refitted
 from feeddrive.diagnosis.finding.scene import scene_of
-from feeddrive.diagnosis.finding.spring_law import TOLD
+from feeddrive.diagnosis.forms.spring_law import TOLD
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem

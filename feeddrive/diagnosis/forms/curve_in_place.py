@@ -16,7 +16,9 @@ from feeddrive.diagnosis.calibration.stated import is_within_tolerance, without_
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.likelier import Taken
 from feeddrive.diagnosis.finding.members import member, members_of
-from feeddrive.diagnosis.finding.open_map import (
+from feeddrive.diagnosis.finding.refitting import balanced, refitted
+from feeddrive.diagnosis.finding.round import Round
+from feeddrive.diagnosis.forms.open_map import (
     OfNoName,
     likeliest_curve,
     log_odds_of_map,
@@ -24,8 +26,6 @@ from feeddrive.diagnosis.finding.open_map import (
     with_curves_anew,
     with_curves_of,
 )
-from feeddrive.diagnosis.finding.refitting import balanced, refitted
-from feeddrive.diagnosis.finding.round import Round
 from feeddrive.diagnosis.friction_at_port import declared_level
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison

@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
-from feeddrive.diagnosis.finding.open_map import with_curves_of
 from feeddrive.diagnosis.finding.refitting import refitted
 from feeddrive.diagnosis.finding.scene import scene_of
+from feeddrive.diagnosis.forms.open_map import with_curves_of
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.starts.starts import TABLE_NODES
