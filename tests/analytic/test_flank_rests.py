@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.motion.band import comparison_band
-from feeddrive.diagnosis.motion.flank_rests import flank_rests
+from feeddrive.diagnosis.motion.flank_rests import _sides, flank_rests
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.files import find_plant
 from feeddrive.plant.analysis.modes import held_modes
@@ -52,6 +52,14 @@ def test_rests_are_told_behind_the_bounces_and_not_before_the_contact_has_forgot
     turned = TIME % STROKE
     assert bouncing[(turned > 0.02) & (turned < 0.3)].all()
     assert not bouncing[(turned > forgotten + 0.4) & (turned < 0.95)].any()
+
+
+def test_where_the_load_is_says_which_flank_it_rides_on() -> None:
+    """A load that is driven hard stretches away from the other flank; in the middle it rides on neither."""
+    flanks = {1.0: -4.6e-6, -1.0: 4.5e-6}  # of a play of 7.5 µm on the bench
+    places = np.array([-4.6e-6, -7.2e-6, 4.0e-6, 7.1e-6, -0.5e-6, 2.0e-6])
+    assert _sides(places, flanks).tolist() == [1, 1, -1, -1, 0, 0]
+    assert not _sides(places, {1.0: 1e-6, -1.0: -1e-6}).any()  # flanks the wrong way round are none
 
 
 @pytest.mark.parametrize("play", [0.0, 5e-6])

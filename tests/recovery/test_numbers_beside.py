@@ -95,8 +95,8 @@ def test_every_row_has_a_block_of_its_own_and_a_fit_takes_it() -> None:
         assert len(blocks) == len(one.residual)
         assert len({*blocks[-2:], *blocks[:-2]}) == len({*blocks[:-2]}) + 2
     assert block_numbers(beside)[-2] % FOLDS == 0
-    # the frequency falls with the payload, the drag does not: its slope is a rounding, on some processors of 1e-13 of 20
-    # deviations, over a step of 1e-4
+    # the frequency falls with the payload, the drag does not: its slope is a rounding, on some processors of 1e-13 of
+    # 20 deviations, over a step of 1e-4
     assert abs(one.jacobian[-1, 0]) < 1e-7 * abs(one.jacobian[-2, 0])
 
 

@@ -20,7 +20,10 @@ from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import read_recording
+from tests.generator import effects as planted
 from tests.recovery.fleet.case import case
+from tests.recovery.planted import axis_plant
+from tests.recovery.test_spring_and_mode import recordings
 
 
 @pytest.fixture(scope="module")
@@ -76,3 +79,14 @@ def test_softer_spring_is_named_with_the_preload_that_may_be_lost_up_to_every_fo
 def diagnosed(seed: int, directory: Path) -> Diagnosis:
     plant, fitted, judged = case(seed).write(directory)
     return diagnose(read_plant(plant), [read_recording(fitted)], [read_recording(judged)])[0]
+
+
+def test_a_play_of_an_axis_that_brakes_harder_than_its_friction() -> None:
+    """The load pushes the motor there, and rests on the other flank: every landing begins anew where it is seen."""
+    fitted, judged = recordings("bench", planted.Backlash(width=7.5e-6), seeds=(75, 76))
+    found, _ = diagnose(axis_plant("bench"), [fitted], [judged])
+    (play,) = found.effects
+    low, high = (float(end) for end in play.parameters["width"].ci95)  # type: ignore[union-attr, arg-type]
+    # bounces carried on for seconds left an interval of 2 nm; five deviations of what the scale's noise leaves here
+    assert high - low < 2e-9
+    assert play.parameters["width"].value == pytest.approx(7.5e-6, abs=1.5e-9)

@@ -10,9 +10,9 @@
 
 The load rests where ρ has been no more than noise for as long as the contact takes to forget (1 / |Re p|, p its pole
 with the motor held), while the motor has gone further one way than the lost motion is wide: a load that rings less than
-is seen rings less than a third of that when its rest is told, and one that is not pushed is left behind by then. The
-direction says which flank. Nothing is told unless every rest is nearer to the middle of its own flank than to the
-other's by far: of a play as small as the travel errors it cannot be seen.
+is seen rings less than a third of that when its rest is told, and one that is not pushed is left behind by then. Where
+e is then says which flank: a motor that brakes harder than friction does is pushed by the load. Nothing is told unless
+every rest is nearer to one flank than to the other by far: of a play as small as the travel errors it cannot be seen.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ QUIETEST = 0.1
 """Share of the pushed rows that rest for sure: a load that bounces at nine tenths of them is not predicted at all."""
 
 NEAR = 0.25
-"""Distance of a rest from the middle of its flank over the lost motion at most: three times as far from the other."""
+"""Distance of a rest from the middle of its flank over that from both at most: three times as far from the other. A
+load that is driven hard stretches away from the other flank, which makes no rest doubtful."""
 
 FEWEST = 8
 """Rows over which ρ is taken at least: five of them are independent, as `ROUGH` asks for."""
@@ -75,13 +76,21 @@ def flank_rests(recording: Recording, plant: Plant, band: Band) -> tuple[FlankRe
     loud = _power(ringing, period) > ROUGH**2 * quiet
     rests = pushed & ~maximum_filter1d(loud, length, origin=(length - 1) // 2)  # in what is past
     samples = np.flatnonzero(rests & ~np.concatenate([[True], rests[:-1]]))
-    sides = np.sign(gone[samples])
-    off = [abs(float(behind[at]) - flanks[side]) for at, side in zip(samples.tolist(), sides.tolist(), strict=True)]
-    if not off or max(off) > NEAR * lost:
+    sides = _sides(behind[samples], flanks)
+    if not len(samples) or not np.all(sides):
         return None
     last_rest, last_loud = (np.maximum.accumulate(np.where(one, np.arange(len(one)), -1)) for one in (rests, loud))
     reach = math.ceil(band.sample_rate / band.edge)
     return FlankRests(samples, sides), np.asarray(binary_dilation(last_loud > last_rest, iterations=reach))
+
+
+def _sides(behind: FloatArray, flanks: dict[float, float]) -> FloatArray:
+    """Flank, 1 or -1, on which the load rests at places (k,) [m]; 0 for one that is not far nearer to one of them."""
+    if flanks[1.0] >= flanks[-1.0]:
+        return np.zeros(len(behind))
+    ahead, back = (np.abs(behind - flanks[side]) for side in (1.0, -1.0))
+    is_near = np.minimum(ahead, back) <= NEAR * (ahead + back)
+    return np.where(is_near, np.where(ahead < back, 1.0, -1.0), 0.0)
 
 
 def _power(series: FloatArray, length: int) -> FloatArray:
