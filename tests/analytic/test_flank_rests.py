@@ -54,6 +54,18 @@ def test_rests_are_told_behind_the_bounces_and_not_before_the_contact_has_forgot
     assert not bouncing[(turned > forgotten + 0.4) & (turned < 0.95)].any()
 
 
+def test_slow_travel_errors_hide_no_flank() -> None:
+    """A screw that is too long by half of the play over the stroke, and bent by a quarter: class 7 of ISO 3408-3."""
+    plain = recorded(PLAY, 20e-6)
+    place = plain["table_position"] / np.ptp(plain["table_position"])
+    table = plain["table_position"] + 0.5 * PLAY * place + 0.25 * PLAY * place**2
+    bent = Recording("strokes", TIME, {"motor_angle": plain["motor_angle"], "table_position": table}, STEP)
+    told, without = (flank_rests(one, PLANT, comparison_band(PLANT, 1 / STEP)) for one in (bent, plain))
+    assert told is not None and without is not None
+    assert np.array_equal(told[0].sides, without[0].sides)
+    assert np.max(np.abs(told[0].samples - without[0].samples)) * STEP < 0.05
+
+
 def test_where_the_load_is_says_which_flank_it_rides_on() -> None:
     """A load that is driven hard stretches away from the other flank; in the middle it rides on neither."""
     flanks = {1.0: -4.6e-6, -1.0: 4.5e-6}  # of a play of 7.5 µm on the bench

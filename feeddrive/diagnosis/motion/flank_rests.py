@@ -8,6 +8,8 @@
 | r | travel per angle of the motor | m/rad |
 | ρ | bounces and ringing, without the travel errors, which are slower | m |
 
+Where it lies is told without the lead errors that both ways have at the same place, as far as they are slow.
+
 The load rests where ρ has been no more than noise for as long as the contact takes to forget (1 / |Re p|, p its pole
 with the motor held), while the motor has gone further one way than the lost motion is wide: a load that rings less than
 is seen rings less than a third of that when its rest is told, and one that is not pushed is left behind by then. Where
@@ -36,6 +38,12 @@ QUIETEST = 0.1
 NEAR = 0.25
 """Distance of a rest from the middle of its flank over that from both at most: three times as far from the other. A
 load that is driven hard stretches away from the other flank, which makes no rest doubtful."""
+
+SLOW = 3
+"""Half waves of a travel error over the stroke at most: a line, and a lead map (`lead_map.HALF_WAVES`)."""
+
+TURNS = 10
+"""Times that rows are told apart by flank at most: each changes those between the flanks alone."""
 
 FEWEST = 8
 """Rows over which ρ is taken at least: five of them are independent, as `ROUGH` asks for."""
@@ -66,6 +74,7 @@ def flank_rests(recording: Recording, plant: Plant, band: Band) -> tuple[FlankRe
     fast = np.abs(gone) > 0.5 * np.max(np.abs(gone))
     if not (np.any(fast & (gone > 0)) and np.any(fast & (gone < 0))):
         return None
+    behind = _without_travel_errors(behind, turned, gone)
     flanks = {side: float(np.median(behind[fast & (side * gone > 0)])) for side in (1.0, -1.0)}
     lost = flanks[-1.0] - flanks[1.0]
     pushed = np.abs(gone) > max(lost, 0.0)
@@ -82,6 +91,30 @@ def flank_rests(recording: Recording, plant: Plant, band: Band) -> tuple[FlankRe
     last_rest, last_loud = (np.maximum.accumulate(np.where(one, np.arange(len(one)), -1)) for one in (rests, loud))
     reach = math.ceil(band.sample_rate / band.edge)
     return FlankRests(samples, sides), np.asarray(binary_dilation(last_loud > last_rest, iterations=reach))
+
+
+def _without_travel_errors(behind: FloatArray, place: FloatArray, gone: FloatArray) -> FloatArray:
+    """How far the table is behind the motor, (n,) [m], without what the same places have on both flanks.
+
+    A load that is braked hard is not on the flank that the way says: from that on, each row is of the flank that it is
+    nearer to, until all stay.
+
+    Args:
+        behind, place: of the table against the motor, and of the motor in travel, (n,) [m].
+        gone: of the motor, one way or the other, (n,) [m].
+    """
+    low, stroke = float(np.min(place)), float(np.ptp(place))
+    curves = np.polynomial.legendre.legvander(2 * (place - low) / stroke - 1, SLOW)
+    side, travel = np.where(gone > 0, 1.0, -1.0), np.zeros(len(place))
+    for _ in range(TURNS):
+        shares = np.linalg.lstsq(np.column_stack([curves, side]), behind, rcond=None)[0]
+        travel = curves @ shares[:-1]
+        nearer = np.where(behind < travel, 1.0, -1.0)
+        if np.array_equal(nearer, side):
+            break
+        side = nearer
+    left: FloatArray = behind - travel
+    return left
 
 
 def _sides(behind: FloatArray, flanks: dict[float, float]) -> FloatArray:
