@@ -44,7 +44,8 @@ PASSES = 4
 def with_likelier_law(problem: Problem, fitted: Fit, count: int, denied: Container[str] = ()) -> Standing | None:
     """The likelier of the sets with either law in the place of the one that a set has; None where it has none.
 
-    Lost preload at the end of its range is free play, and stands for itself only where there is no fit of that.
+    Lost preload at the end of its range is free play, and stands for itself only where there is no fit of that; so does
+    one that is not told from that end.
 
     Args:
         problem: recordings.
@@ -67,7 +68,18 @@ def with_likelier_law(problem: Problem, fitted: Fit, count: int, denied: Contain
     for one in inside or able:
         if best is None or odds_between(best, one, count) > 0:
             best = one
-    return best
+    plays = [one for one in able if isinstance(one.fit.effects[place], Backlash)]
+    return plays[0] if best is not None and plays and not _carries(best, place, count) else best
+
+
+def _carries(there: Standing, place: int, count: int) -> bool:
+    """Whether a lost preload is told, 20 to 1, from itself at the ratio at which it is a free play; so is none other.
+
+    A play whose edges are soft lies between a play of sharp edges and such a one: what is nearer to a lost preload than
+    to sharp edges is none yet, its ratio tells.
+    """
+    play = hardly_carrying(there.problem, there.fit, place)
+    return play is None or odds_between(Standing(there.problem, play), there, count) > TOLD
 
 
 def hardly_carrying(problem: Problem, found: Fit, place: int) -> Fit | None:
