@@ -21,9 +21,10 @@ from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import read_recording
 from tests.generator import effects as planted
+from tests.generator.effects.relatives import Relative
 from tests.recovery.fleet.case import case
 from tests.recovery.planted import axis_plant
-from tests.recovery.test_spring_and_mode import recordings
+from tests.recovery.test_spring_and_mode import problem_of, recordings
 
 
 @pytest.fixture(scope="module")
@@ -90,3 +91,23 @@ def test_a_play_of_an_axis_that_brakes_harder_than_its_friction() -> None:
     # bounces carried on for seconds left an interval of 2 nm; five deviations of what the scale's noise leaves here
     assert high - low < 2e-9
     assert play.parameters["width"].value == pytest.approx(7.5e-6, abs=1.5e-9)
+
+
+@pytest.mark.parametrize("width", [3e-8, 1e-7])
+def test_edges_that_are_soft_make_no_lost_preload(width: float) -> None:
+    """Softer than sharp edges, and not told from a tenth of the stiffness: no ball touches yet."""
+    soft = Relative(planted.Backlash(width=width), "soft edges", {"gap_softness": 0.1 * width}, ("gap_softness",))
+    alone = problem_of("light", soft)
+    there = with_likelier_law(alone, fit(alone, [PreloadLoss.of(ratio=0.2, force=5e7 * width)]), count=40)
+    assert there is not None
+    (law,) = there.fit.effects
+    assert isinstance(law, Backlash) and number(law.values["width"]) == pytest.approx(width, rel=0.05)
+
+
+@pytest.mark.parametrize("force", [3.0, 10.0])
+def test_a_preload_whose_ratio_is_told_stays_lost(force: float) -> None:
+    alone = problem_of("light", planted.PreloadLoss(ratio=0.35, force=force))
+    there = with_likelier_law(alone, fit(alone, [PreloadLoss.of(ratio=0.35, force=force)]), count=40)
+    assert there is not None
+    (law,) = there.fit.effects
+    assert isinstance(law, PreloadLoss) and number(law.values["ratio"]) == pytest.approx(0.35, rel=0.05)
