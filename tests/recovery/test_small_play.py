@@ -88,7 +88,7 @@ def test_a_play_of_an_axis_that_brakes_harder_than_its_friction() -> None:
     found, _ = diagnose(axis_plant("bench"), [fitted], [judged])
     (play,) = found.effects
     low, high = (float(end) for end in play.parameters["width"].ci95)  # type: ignore[union-attr, arg-type]
-    # bounces carried on for seconds left an interval of 2 nm; five deviations of what the scale's noise leaves here
+    # bounces carried on for seconds left an interval of 4 nm; five deviations of what the scale's noise leaves here
     assert high - low < 2e-9
     assert play.parameters["width"].value == pytest.approx(7.5e-6, abs=1.5e-9)
 

@@ -104,7 +104,7 @@ def at_likelier_place(problem: Problem, found: Fit, count: int) -> tuple[Problem
 
 
 def _without_one(there: Standing, count: int) -> list[Standing]:
-    """The sets without one of the other members that the data are likelier without, as far as slopes tell.
+    """The sets without one of the members that the data are likelier without, as far as slopes tell.
 
     What one effect leaves at the wrong place another may have taken: a drag at the screw, and a table position that
     comes late, are together a drag at the table.

@@ -101,23 +101,26 @@ def _of_another_form(taken: Taken, count: int) -> tuple[Problem, Fit] | None:
     beside one that is near, and odds over either are none between the two.
     """
     effects, added = taken.fit.effects, len(taken.names)
-    problem = with_curves_of(taken.problem, effects)
-    if not has_curve(effects):
-        return None
-    problem, named = balanced(problem, fit(problem, effects, iterations=JOINT_ITERATIONS))
-    effects = named.effects
-    able: list[tuple[OfNoName, tuple[Problem, Fit]]] = []
     first = len(effects) - added
     singly = [[place] for place in range(first, len(effects))]
+    asked = []
     for gone in singly if added == 1 else [*singly, list(range(first, len(effects)))]:
-        rest = [effect for i, effect in enumerate(effects) if i not in gone]
-        if has_curve(rest) and not has_play([effects[i] for i in gone]):
-            without = fit(problem, rest, iterations=JOINT_ITERATIONS)
-            curve, opened = likeliest_curve(problem, without, count)
-            likelier = curve.odds > log_odds(problem, without, named, count, variance=curve.variance)
-            there = fit(opened, rest, iterations=JOINT_ITERATIONS)
-            if likelier and _leaves_less(Standing(opened, there), Standing(problem, named)):
-                able.append((curve, (opened, without)))
+        stays = [place for place in range(len(effects)) if place not in gone]
+        if has_curve([effects[place] for place in stays]) and not has_play([effects[place] for place in gone]):
+            asked.append(stays)
+    if not asked:
+        return None
+    problem = with_curves_of(taken.problem, effects)
+    problem, named = balanced(problem, fit(problem, effects, iterations=JOINT_ITERATIONS))
+    able: list[tuple[OfNoName, tuple[Problem, Fit]]] = []
+    for stays in asked:
+        rest = [named.effects[place] for place in stays]
+        without = fit(problem, rest, iterations=JOINT_ITERATIONS)
+        curve, opened = likeliest_curve(problem, without, count)
+        likelier = curve.odds > log_odds(problem, without, named, count, variance=curve.variance)
+        there = fit(opened, rest, iterations=JOINT_ITERATIONS)
+        if likelier and _leaves_less(Standing(opened, there), Standing(problem, named)):
+            able.append((curve, (opened, without)))
     if not able:
         return None
     variance = min((curve for curve, _ in able), key=lambda one: one.left).variance

@@ -64,12 +64,17 @@ def with_likelier_law(problem: Problem, fitted: Fit, count: int, denied: Contain
     ]
     able = [one for one in (_settled(problem, fitted.effects), *others) if one is not None]
     inside = [one for one in able if not at_its_limit(one.fit.effects[place])]
+    best = _likeliest(inside or able, count)
+    play = _likeliest([one for one in able if isinstance(one.fit.effects[place], Backlash)], count)
+    return best if best is None or play is None or _carries(best, place, count) else play
+
+
+def _likeliest(sets: Sequence[Standing], count: int) -> Standing | None:
     best: Standing | None = None
-    for one in inside or able:
+    for one in sets:
         if best is None or odds_between(best, one, count) > 0:
             best = one
-    plays = [one for one in able if isinstance(one.fit.effects[place], Backlash)]
-    return plays[0] if best is not None and plays and not _carries(best, place, count) else best
+    return best
 
 
 def _carries(there: Standing, place: int, count: int) -> bool:
