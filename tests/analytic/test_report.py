@@ -29,7 +29,7 @@ from feeddrive.diagnosis.judging.result import (
     error_without,
 )
 from feeddrive.diagnosis.simulated.simulation_result import SimulationResult
-from feeddrive.diagnosis.unexplained.unexplained_result import Carried
+from feeddrive.diagnosis.unexplained.unexplained_result import Above, Carried
 from feeddrive.effects.base import Port
 from feeddrive.effects.tabulated import TabulatedForce, TabulatedTorque
 from feeddrive.errors import InputError
@@ -161,6 +161,28 @@ def test_nothing_missing_is_said_plainly() -> None:
     assert "→" not in text  # before and after are the same plant, so no pair of figures is shown
 
 
+@pytest.mark.parametrize(
+    ("doubt", "left"),
+    [
+        (0.17, False),  # half of the error's square above the floor, three standard errors of it are 0.51
+        (0.16, True),
+    ],
+)
+def test_what_steps_of_the_sensors_may_hold_is_not_unexplained(doubt: float, left: bool) -> None:
+    clean = examples.nothing_missing()
+    position = next(one for one in clean.channels if one.name == "table_position")
+    rms = 1.6 * position.noise_rms
+    coarse = dataclasses.replace(position, after=dataclasses.replace(position.after, rms=rms))
+    channels = tuple(coarse if one is position else one for one in clean.channels)
+    above = Above(share=0.5, standard_error=doubt, rms=rms, floor=rms * math.sqrt(0.5))
+    rest = Unexplained(1e-6, above=above)
+    behind_steps = dataclasses.replace(clean, channels=channels, unexplained={"table_position": rest})
+    said = verdict_sentences(behind_steps)
+    assert said[0].endswith("explains the recording down to the noise and the steps of its sensors.") is not left
+    assert any("Still unexplained" in one for one in said) is left
+    assert ('class="verdict clean"' in verdict_section(behind_steps)) is not left
+
+
 @pytest.mark.parametrize(("ci95", "beyond"), [((1.8, 2.6), True), ((1.1, 2.6), False), ((0.5, 0.8), True)])
 def test_a_value_beyond_its_tolerance_is_told_where_no_name_says_so(ci95: tuple[float, float], beyond: bool) -> None:
     value = CalibratedResult("axial_stiffness", "axial stiffness", "N/m", 1.0, 0.5 * sum(ci95), ci95, 0.2)
@@ -174,7 +196,7 @@ def test_calm_box_is_for_machines_without_a_fault(found: Diagnosis) -> None:
     """Two faults that are explained down to noise are two faults."""
     clean = examples.nothing_missing()
     quiet = dataclasses.replace(clean, effects=found.effects)
-    assert all(is_noise(channel) for channel in quiet.channels)
+    assert all(is_noise(quiet, channel) for channel in quiet.channels)
     assert 'class="verdict clean"' in verdict_section(clean)
     assert 'class="verdict clean"' not in verdict_section(quiet)
 

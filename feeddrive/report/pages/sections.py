@@ -36,7 +36,7 @@ from feeddrive.units.quantity import format_quantity, percent
 
 def verdict_section(diagnosis: Diagnosis) -> str:
     """The verdict in a box, the main finding in bold; calm only where nothing was found and nothing is left."""
-    noise = diagnosis.channels and all(is_noise(channel) for channel in diagnosis.channels)
+    noise = diagnosis.channels and all(is_noise(diagnosis, channel) for channel in diagnosis.channels)
     clean = noise and diagnosis.nothing_missing and not diagnosis.changes.changes
     note = paragraph(used_sentence(diagnosis), "note")
     return f"{verdict(verdict_sentences(diagnosis), bool(clean), note)}\n"
