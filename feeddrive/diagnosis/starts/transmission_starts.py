@@ -5,9 +5,10 @@ Where the motor is given, the table lags by the stretch of the spring. What a so
     -x_left = b sat(F, F1) / k                 preload lost around zero force, b = 1 / ratio - 1
     -x_left = (b u + 4 m u (1 - u)) F / k,    u = (x - x_l) / (x_h - x_l)    stiffness falling along the stroke
 
-follows the transmitted force F; the first by least squares for a few F1, the second beside a softer spring everywhere.
-Declared values within their tolerances have taken what they can of it, so that both are asked beside their slopes.
-Where the lag does not follow, no simulation is spent on it.
+follows the transmitted force F; the first by least squares for a few F1, beside the slopes of declared values, which
+have taken what they can of it within their tolerances. Where the lag does not follow, no simulation is spent on it.
+The second begins at none: what a coarse scale hides of the lag may show in the torque, whose resonance moves along the
+stroke.
 """
 
 from __future__ import annotations
@@ -18,7 +19,6 @@ from feeddrive.diagnosis.calibration.calibration import Whitener, whitener
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.likelihood.coordinates import LEAST
-from feeddrive.diagnosis.likelihood.fit import unit_columns
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation, parts_of
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
@@ -27,9 +27,8 @@ from feeddrive.plant.analysis.stiffness_budget import nut_stiffness
 from feeddrive.typing import FloatArray
 
 LEAST_LAG = 0.004
-"""Share of the square of what is left of the position that must follow the force, for each form that it is asked of:
-less than what an effect must take away of all channels together, and twice what the best of the forces tried takes from
-noise in some seconds."""
+"""Share of the square of what is left of the position that must follow the force: less than what an effect must take
+away of all channels together, and twice what the best of the forces tried takes from noise in some seconds."""
 
 PARABOLA = 0.01
 """Compliance halfway that a parabola begins with: one of none is a straight line, which has a value less."""
@@ -80,7 +79,7 @@ def stiffness(scene: Scene) -> list[list[Effect]]:
 
 
 def stiffness_vs_position(scene: Scene) -> list[list[Effect]]:
-    """A straight line and a parabola, if the lag follows force times place or its square beside a stiffness.
+    """A straight line and a parabola, where force and place change.
 
     The stroke is the declared one, or where none is declared that of the recordings.
     """
@@ -95,7 +94,6 @@ def stiffness_vs_position(scene: Scene) -> list[list[Effect]]:
     stretch = force / nut_stiffness(scene.plant)
     along = (scene.runs[scene.longest].table_position - low) / (high - low)
     beside = _beside_values(scene)
-    lag = beside.applied(lag)
     everywhere, *growing = (
         beside.applied(one)
         for one in _in_band(scene, np.column_stack([stretch, stretch * along, stretch * along * (1 - along)])).T
@@ -107,10 +105,6 @@ def stiffness_vs_position(scene: Scene) -> list[list[Effect]]:
     growing = [one for one in growing if float(one @ one) > least]
     if not growing:
         return []  # at a place that stays
-    columns, _ = unit_columns(np.column_stack(growing))
-    taken = columns @ np.linalg.lstsq(columns, lag, rcond=1e-10)[0]
-    if float(taken @ taken) < LEAST_LAG * len(growing) * float(lag @ lag):
-        return []
     return forms
 
 
