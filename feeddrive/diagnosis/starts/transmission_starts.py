@@ -102,10 +102,8 @@ def stiffness_vs_position(scene: Scene) -> list[list[Effect]]:
     if not float(everywhere @ everywhere) > least:
         return []  # a force that stays
     growing = [one - everywhere * float(one @ everywhere) / float(everywhere @ everywhere) for one in growing]
-    growing = [one for one in growing if float(one @ one) > least]
-    if not growing:
-        return []  # at a place that stays
-    return forms
+    # where no column is left the place stays
+    return forms if any(float(one @ one) > least for one in growing) else []
 
 
 def _beside_values(scene: Scene) -> Whitener:
