@@ -20,6 +20,7 @@ from feeddrive.diagnosis.certainty.one_sided import all_intervals
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.effect_results import effect_results, refused_effects
+from feeddrive.diagnosis.judging.fitted_stroke import beyond_fitted_stroke, fitted_stroke
 from feeddrive.diagnosis.judging.judge import channel_results, judged_recordings
 from feeddrive.diagnosis.judging.law_tables import without_tables
 from feeddrive.diagnosis.judging.result import (
@@ -56,7 +57,6 @@ from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
-from feeddrive.typing import FloatArray
 
 
 @one_thread()
@@ -199,30 +199,14 @@ def _reported(
             *known_together(found.problem, found.fit),
             *last_state(searched),
             *_notes(begun.problem.evidence, begun.judged, found),
+            *beyond_fitted_stroke(found.problem.evidence, judged),
             *refinement.notes,
             *((budget.sentence,) if budget.sentence else ()),
         ),
         untried=budget.sentence,
-        fitted_stroke=_fitted_stroke(found.problem.evidence, plant.chain.motor_radius if plant.has_motion else 0.0),
+        fitted_stroke=fitted_stroke(found.problem.evidence, plant.chain.motor_radius if plant.has_motion else 0.0),
     )
     return result, (*effects, *rest.effects)
-
-
-def _fitted_stroke(evidence: Sequence[Evidence], radius: float) -> tuple[float, float] | None:
-    """Least and greatest table position at the fitted samples [m]; None where none was recorded.
-
-    Args:
-        evidence: fitted recordings.
-        radius: travel over the motor's angle [m/rad], for recordings without a table position.
-    """
-    found: list[FloatArray] = []
-    for e in evidence:
-        if "table_position" in e.recording:
-            found.append(e.recording["table_position"][e.fit_rows])
-        elif "motor_angle" in e.recording:
-            found.append(radius * e.recording["motor_angle"][e.fit_rows])
-    known = np.concatenate(found) if found else np.empty(0)
-    return (float(np.nanmin(known)), float(np.nanmax(known))) if len(known) else None
 
 
 def _numbers_met(found: Search, doubted: Sequence[MeasuredNumber]) -> tuple[NumberResult, ...]:

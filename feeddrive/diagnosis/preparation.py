@@ -19,6 +19,7 @@ from feeddrive.diagnosis.motion.prediction import AxisPredictor
 from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.diagnosis.motion.row_steps import in_longest_steps
 from feeddrive.diagnosis.motion.slow_rows import is_slow
+from feeddrive.diagnosis.motion.torque_steps import with_open_steps
 from feeddrive.diagnosis.suspicion.motor_jumps import refuse_motor_jumps
 from feeddrive.diagnosis.suspicion.torque_channel import refuse_what_is_no_torque
 from feeddrive.errors import InputError
@@ -138,7 +139,10 @@ def _in_steps(
 ) -> tuple[tuple[AxisEvidence, ...], list[Evidence]]:
     """Recordings in the longest steps of the driven simulation; one that is fitted and judged stays one."""
     asked = dict.fromkeys([*fitted, *(one for one in judged if isinstance(one, AxisEvidence))])
-    ready = {one: with_open_rows(in_longest_steps(one, plant, predictor), plant, predictor) for one in asked}
+    ready = {}
+    for one in asked:
+        stepped = with_open_rows(in_longest_steps(one, plant, predictor), plant, predictor)
+        ready[one] = with_open_steps(stepped, plant, predictor)
     others = [ready[one] if isinstance(one, AxisEvidence) else one for one in judged]
     return tuple(ready[one] for one in fitted), others
 

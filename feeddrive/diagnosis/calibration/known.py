@@ -36,7 +36,6 @@ from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.slopes import jacobian_of
-from feeddrive.diagnosis.motion.torque_steps import steps_of_torque
 from feeddrive.typing import FloatArray
 
 TOLERANCE = 2.0
@@ -189,9 +188,6 @@ def known_values(problem: Problem, found: Fit) -> Known | None:
     if own.size:
         columns = columns - own @ np.column_stack([linear_step(own, column) for column in columns.T])
     score = score_covariance(problem.evidence, rows, left, columns) + encoder_scores(problem)
-    steps = steps_of_torque(problem, found.effects)
-    if steps is not None:
-        score = score + np.outer(columns.T @ steps, columns.T @ steps)
     scale = np.sqrt(np.maximum(np.diag(score), np.finfo(float).tiny))
     sizes, directions = np.linalg.eigh(score / np.outer(scale, scale))
     usable = sizes > 1e-10

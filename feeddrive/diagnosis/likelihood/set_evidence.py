@@ -1,7 +1,7 @@
 """Evidence of a set of effects: what the data say for it, less what its freedom and its luck among many cost.
 
     log E(S) = -|r_S|² / 2c + Σ log p(θ_i) + k/2 log 2π - 1/2 log |H/c + W⁻²| + log p(S)
-    c = d' Γ d / d'd + (d'e)² / d'd + δ max(|r|² - n, n / 10) + v
+    c = d' Γ d / d'd + δ max(|r|² - n, n / 10) + v
     p(S) = B(1 + |S|, 2K - |S|) / B(1, K)
 
 | symbol | meaning | unit |
@@ -14,7 +14,6 @@
 | d | difference of the residuals of two sets that are compared | 1 |
 | Γ | covariance of the residual that is less: its spectrum, its level where d is large, sums over blocks | 1 |
 | δ, n | `DISCREPANCY`, of what is left above n, which the noise leaves, known to a tenth (`LEVEL_KNOWN`) | 1 |
-| e | what the steps of a torque leave of the prediction, where they are coarse (`torque_steps`) | 1 |
 | v | what an encoder's steps alone give along d (`encoder_along`) | 1 |
 | K | candidates and starts that were tried for one further effect | 1 |
 
@@ -63,7 +62,6 @@ from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND
 from feeddrive.diagnosis.motion.predictability import has_play
-from feeddrive.diagnosis.motion.torque_steps import steps_of_torque
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
@@ -231,10 +229,6 @@ def variance_along(problem: Problem, left: Fit, first: Fit, second: Fit) -> floa
         return 1.0
     noise = float(score_variances(problem, left.residual, difference[:, None])[0])
     missed = float(model @ difference**2) / 1.96**2
-    steps = steps_of_torque(problem, left.effects)
-    if steps is not None:
-        rounded = steps if problem.whitener is None else problem.whitener.applied(steps)
-        missed += float(difference @ rounded) ** 2
     return (noise + missed) / square + discrepancy(problem, left.squared_error)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Self
@@ -13,6 +14,7 @@ from feeddrive.diagnosis.calibration.calibration import Whitener, whitener
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.motion.band import Band
 from feeddrive.diagnosis.motion.encoder_error import EncoderError, known_motion_of
+from feeddrive.diagnosis.motion.rounding import Rounding
 from feeddrive.diagnosis.motion.weighing import Weighing
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
@@ -46,6 +48,7 @@ class AxisEvidence(Evidence):
             `gains`.
         between_rows: of what a drive may do between two rows, channel to what that makes of it, in the band, (n,)
             (`motion.between_rows`).
+        rounding: what the steps of the torque may make of it; None where they make nothing that comes again.
         acting: torque as it acts at the rows, of all frequencies, (n,) [N m]; None where it is not known.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
@@ -64,6 +67,7 @@ class AxisEvidence(Evidence):
     drawn: tuple[MotorMotion, ...] = ()
     unsure: Channels = ()
     between_rows: Channels = ()
+    rounding: Rounding | None = None
     acting: FloatArray | None = None
     torque_rows: tuple[int, int] | None = None
     weights: dict[str, FloatArray] = field(default_factory=dict)
@@ -129,7 +133,7 @@ class AxisEvidence(Evidence):
         """Channels at some samples as any are, less what motion that is not known, or a lead map, may make of them."""
         weighted = super().weighted(series, rows)
         has_map = self.open_map and self.lead_map is not None and self.lead_map.shape[1] > 0
-        is_open = bool(self.unsure or self.between_rows or any(self.law_curves.values()) or has_map)
+        is_open = bool(self.unsure or self.between_rows or self.rounding or any(self.law_curves.values()) or has_map)
         if not is_open or not rows.any():
             return weighted
         key = rows.tobytes()
@@ -147,7 +151,14 @@ class AxisEvidence(Evidence):
         others = [part for curve in self.law_curves.values() for part in curve]
         others += self.map_parts if self.open_map else []
         others += self.between_rows
-        return *self.evened_unsure[key], *(self.all_evened(part, every) for part in others)
+        parts = (self.all_evened(part, every) for part in (*others, *self._rounded()))
+        return *self.evened_unsure[key], *parts
+
+    def _rounded(self) -> Iterator[dict[str, FloatArray]]:
+        """Series of all channels, (n,) each, that the steps of a torque may make."""
+        none = dict.fromkeys(self.channels, np.zeros(len(self.counted)))
+        for part in self.rounding.parts() if self.rounding else ():
+            yield {**none, "motor_torque": self.in_band(part)}
 
     @property
     def map_parts(self) -> list[dict[str, FloatArray]]:
@@ -174,8 +185,9 @@ class AxisEvidence(Evidence):
         return {}
 
     def known_to(self, name: str) -> float:
-        """Rms of what sensor and encoder add to a channel in the band."""
-        return math.hypot(self.noise[name], self.added.get(name, 0.0))
+        """Rms of what sensor, steps of the torque and encoder add to a channel in the band."""
+        rounded = self.rounding.size if self.rounding and name == "motor_torque" else 0.0
+        return math.hypot(self.noise[name], rounded, self.added.get(name, 0.0))
 
     def evened(self, name: str, series: FloatArray, every: int) -> FloatArray:
         """A channel, (n,), at every k-th sample, each frequency weighed by sensor noise over that and the encoder's.
