@@ -54,14 +54,28 @@ def not_worse_than_declared(
 
 def worst_channel(problem: Problem, judged: Sequence[Judged]) -> str:
     """The channel that is worse than declared by the most, beyond its scatter; empty where none is."""
-    worse = {name: worse_by(problem, judged, name) for name in judged_channels(judged)}
-    name = max(worse, key=lambda one: worse[one])
-    return name if worse[name] > 0 else ""
+    worse = {name: worse_by(problem, judged, name) for name in _telling(problem, judged)}
+    name = max(worse, key=lambda one: worse[one], default="")
+    return name if name and worse[name] > 0 else ""
+
+
+def _telling(problem: Problem, judged: Sequence[Judged]) -> list[str]:
+    """Channels that tell a better plant from a worse: not those of which no more is left than coarse steps make.
+
+    Rounding holds over every passage of a motion: which of two plants it favours is chance, as large as it is itself.
+    """
+    told = []
+    for name in judged_channels(judged):
+        parts = [one.evidence for one in judged if name in one.evidence.channels]
+        left = float(np.mean(_errors(problem, judged, name).after ** 2))
+        if not any(name in e.coarse for e in parts) or left > np.mean([e.known_to(name) ** 2 for e in parts]):
+            told.append(name)
+    return told
 
 
 def _all_worse(problem: Problem, judged: Sequence[Judged]) -> bool:
     """Whether a channel is worse than declared beyond the scatter of its own rms, and all together are too."""
-    pairs = [_errors(problem, judged, name) for name in judged_channels(judged)]
+    pairs = [_errors(problem, judged, name) for name in _telling(problem, judged)]
     squares = [(float(one.before @ one.before), float(one.after @ one.after)) for one in pairs]
     worse = any(
         after > before * (1 + SCATTER * np.sqrt(2 / max(one.values, 1.0)))

@@ -116,6 +116,11 @@ class Evidence:
         """A series, (n,), as it shows in the comparison, at the samples that carry all of it; not at its ends."""
         return series[:: self.thinning]
 
+    @property
+    def coarse(self) -> frozenset[str]:
+        """Channels whose noise is that of their steps, and is not read from what is left."""
+        return frozenset()
+
     def known_to(self, name: str) -> float:
         """Rms of what the sensors add to a channel in the band."""
         return self.noise[name]

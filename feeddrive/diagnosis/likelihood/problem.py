@@ -115,12 +115,14 @@ class Problem:
     def levelled(self, effects: Sequence[Effect] = ()) -> Problem:
         """The problem with no channel's noise above what is left of it: a sensor adds no more than the residual holds.
 
-        The noise is read from fourth differences, which in a stiff loop hold what the drive does as well.
+        The noise is read from fourth differences, which in a stiff loop hold what the drive does as well. That of
+        coarse steps is theirs: waves that rounding may have take away much of what is left, and not of what it does.
         """
         evidence = []
         for e, rows in zip(self.evidence, self.by_channel(self.residual(effects)), strict=True):
             left = {name: float(np.mean(one**2)) / e.kept for name, one in rows.items()}
-            level = {name: math.sqrt(one) if 0 < one < LEVEL**2 else 1.0 for name, one in left.items()}
+            read = {name: one for name, one in left.items() if name not in e.coarse}
+            level = {name: math.sqrt(one) if 0 < one < LEVEL**2 else 1.0 for name, one in read.items()}
             evidence.append(replace(e, noise={name: noise * level.get(name, 1.0) for name, noise in e.noise.items()}))
         return replace(self, evidence=tuple(evidence))
 

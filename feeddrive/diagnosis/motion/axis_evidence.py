@@ -185,9 +185,13 @@ class AxisEvidence(Evidence):
         return {}
 
     def known_to(self, name: str) -> float:
-        """Rms of what sensor, steps of the torque and encoder add to a channel in the band."""
-        rounded = self.rounding.size if self.rounding and name == "motor_torque" else 0.0
-        return math.hypot(self.noise[name], rounded, self.added.get(name, 0.0))
+        """Rms of what sensor and encoder add to a channel in the band."""
+        return math.hypot(self.noise[name], self.added.get(name, 0.0))
+
+    @property
+    def coarse(self) -> frozenset[str]:
+        """Channels in steps whose rounding comes again: as large as it is on the mean, whatever is left at hand."""
+        return frozenset({"motor_torque"} if self.rounding else ())
 
     def evened(self, name: str, series: FloatArray, every: int) -> FloatArray:
         """A channel, (n,), at every k-th sample, each frequency weighed by sensor noise over that and the encoder's.
