@@ -54,8 +54,8 @@ class AxisEvidence(Evidence):
             None where the torque is what the drive holds.
         rests: where the load is seen to ride on a flank; None where it is not.
         bouncing: samples at which it has left a flank and not come to rest again, (n,); None as `rests`.
-        evened_unsure: `unsure` as `evened`, by every how many samples and from which to which: as long to make as tens
-            of predictions, and the same for all evidence with one encoder's error.
+        evened_unsure: `unsure` and `rounding` as `evened`, by every how many samples and from which to which: as long
+            to make as tens of predictions, and the same for all evidence with one encoder's error.
     """
 
     motion: MotorMotion
@@ -147,12 +147,11 @@ class AxisEvidence(Evidence):
         """Series of all channels, as `evened`, that a recording may hold, as far as a deviation of one goes."""
         key = every, self._ends.start, self._ends.stop
         if key not in self.evened_unsure:
-            self.evened_unsure[key] = tuple(self.all_evened(part, every) for part in self.unsure)
+            self.evened_unsure[key] = tuple(self.all_evened(part, every) for part in (*self.unsure, *self._rounded()))
         others = [part for curve in self.law_curves.values() for part in curve]
         others += self.map_parts if self.open_map else []
         others += self.between_rows
-        parts = (self.all_evened(part, every) for part in (*others, *self._rounded()))
-        return *self.evened_unsure[key], *parts
+        return *self.evened_unsure[key], *(self.all_evened(part, every) for part in others)
 
     def _rounded(self) -> Iterator[dict[str, FloatArray]]:
         """Series of all channels, (n,) each, that the steps of a torque may make."""

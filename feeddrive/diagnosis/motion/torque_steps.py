@@ -24,4 +24,5 @@ def with_open_steps(evidence: AxisEvidence, plant: Plant, predictor: AxisPredict
     predicted = predictor.predict(plant, evidence)[TORQUE] if step else torque
     if not step or not np.all(np.isfinite(predicted)):
         return evidence
-    return replace(evidence, rounding=rounding_of(torque, predicted, step, evidence.counted))
+    rounding = rounding_of(torque, predicted, step, evidence.counted)
+    return replace(evidence, rounding=rounding, evened_unsure={})
