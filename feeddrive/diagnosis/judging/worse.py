@@ -68,7 +68,7 @@ def _telling(problem: Problem, judged: Sequence[Judged]) -> list[str]:
     for name in judged_channels(judged):
         parts = [one.evidence for one in judged if name in one.evidence.channels]
         left = float(np.mean(_errors(problem, judged, name).after ** 2))
-        if not any(name in e.coarse for e in parts) or left > np.mean([e.known_to(name) ** 2 for e in parts]):
+        if left > np.mean([e.rounded(name) ** 2 for e in parts]):
             told.append(name)
     return told
 

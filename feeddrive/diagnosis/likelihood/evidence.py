@@ -116,10 +116,9 @@ class Evidence:
         """A series, (n,), as it shows in the comparison, at the samples that carry all of it; not at its ends."""
         return series[:: self.thinning]
 
-    @property
-    def coarse(self) -> frozenset[str]:
-        """Channels whose noise is that of their steps, and is not read from what is left."""
-        return frozenset()
+    def rounded(self, name: str) -> float:
+        """Rms of what rounding to steps makes of a channel that comes again, in its unit; 0 where nothing does."""
+        return 0.0
 
     def known_to(self, name: str) -> float:
         """Rms of what the sensors add to a channel in the band."""

@@ -115,14 +115,15 @@ class Problem:
     def levelled(self, effects: Sequence[Effect] = ()) -> Problem:
         """The problem with no channel's noise above what is left of it: a sensor adds no more than the residual holds.
 
-        The noise is read from fourth differences, which in a stiff loop hold what the drive does as well. That of
-        coarse steps is theirs: waves that rounding may have take away much of what is left, and not of what it does.
+        The noise is read from fourth differences, which in a stiff loop hold what the drive does as well. It is
+        no less than what rounding makes: waves that it may have take away much of what is left, not of what it does.
         """
         evidence = []
         for e, rows in zip(self.evidence, self.by_channel(self.residual(effects)), strict=True):
             left = {name: float(np.mean(one**2)) / e.kept for name, one in rows.items()}
-            read = {name: one for name, one in left.items() if name not in e.coarse}
-            level = {name: math.sqrt(one) if 0 < one < LEVEL**2 else 1.0 for name, one in read.items()}
+            level = {name: math.sqrt(one) if 0 < one < LEVEL**2 else 1.0 for name, one in left.items()}
+            least = {name: min(e.rounded(name) / noise, 1.0) if noise else 0.0 for name, noise in e.noise.items()}
+            level = {name: max(one, least[name]) for name, one in level.items()}
             evidence.append(replace(e, noise={name: noise * level.get(name, 1.0) for name, noise in e.noise.items()}))
         return replace(self, evidence=tuple(evidence))
 

@@ -187,10 +187,9 @@ class AxisEvidence(Evidence):
         """Rms of what sensor and encoder add to a channel in the band."""
         return math.hypot(self.noise[name], self.added.get(name, 0.0))
 
-    @property
-    def coarse(self) -> frozenset[str]:
-        """Channels in steps whose rounding comes again: as large as it is on the mean, whatever is left at hand."""
-        return frozenset({"motor_torque"} if self.rounding else ())
+    def rounded(self, name: str) -> float:
+        """Rms of what rounding to steps makes of a channel that comes again, in its unit; 0 where nothing does."""
+        return self.rounding.size if self.rounding and name == "motor_torque" else 0.0
 
     def evened(self, name: str, series: FloatArray, every: int) -> FloatArray:
         """A channel, (n,), at every k-th sample, each frequency weighed by sensor noise over that and the encoder's.
