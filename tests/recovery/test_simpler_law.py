@@ -20,6 +20,7 @@ from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.chain.structural_mode import NO_PEAK, StructuralMode
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
+from feeddrive.effects.friction.friction_vs_position import FrictionVsPosition
 from feeddrive.effects.friction.stribeck import Stribeck
 from feeddrive.effects.source.ball_pass_ripple import BallPassRipple
 from feeddrive.effects.source.constant_force import ConstantForce
@@ -51,6 +52,29 @@ def test_a_stribeck_friction_that_the_speeds_tell_is_none(velocity: float) -> No
     problem = bench_with(law)
     found = fit(problem, (law,))
     assert level_everywhere(problem, found) == []
+
+
+def travelled(problem: Problem) -> tuple[float, float]:
+    """Middle and length of what was travelled [m]."""
+    (run,) = scene_of(problem, ()).runs
+    return float(np.mean([run.table_position.min(), run.table_position.max()])), float(np.ptp(run.table_position))
+
+
+@pytest.mark.parametrize("times", [1.5, 6.0])
+def test_a_bump_wider_than_what_was_travelled_is_a_level(times: float) -> None:
+    problem = bench_with(FrictionDeviation.of(Port.TABLE, coulomb_factor=1.6, viscous_factor=1.0))
+    middle, travel = travelled(problem)
+    found = fit(problem, (FrictionVsPosition.of(peak=10.0, centre=middle, half_width=times * travel),))
+    assert level_everywhere(problem, found) == list(found.effects)
+
+
+@pytest.mark.parametrize("times", [0.2, 1.2])
+def test_a_bump_that_the_places_tell_is_none(times: float) -> None:
+    """One within what was travelled, and one from whose end to its middle a sixth has fallen."""
+    middle, travel = travelled(bench_with(ConstantForce.of(force=0.0)))
+    law = FrictionVsPosition.of(peak=20.0, centre=middle, half_width=times * travel)
+    problem = bench_with(law)
+    assert level_everywhere(problem, fit(problem, (law,))) == []
 
 
 @pytest.mark.parametrize(("periods", "is_none"), [(0.6, True), (0.95, True), (1.3, False), (40.0, False)])

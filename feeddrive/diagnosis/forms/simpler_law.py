@@ -2,11 +2,13 @@
 
 Near a law that has run far from where it is none no slope tells of the simpler one: a spring has a force of some
 thousand newtons with it, a mode beyond the band a mass. So the simpler one is fitted in its place, and odds decide. A
-Stribeck friction that falls beyond all speeds is a level, which is a declared value and fitted in every set. A sine of
-less than a period is a curve over the stroke.
+Stribeck friction that falls beyond all speeds, or a bump wider than what was travelled, is a level: a declared value,
+which is fitted in every set. A sine of less than a period is a curve over the stroke.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -23,9 +25,11 @@ from feeddrive.diagnosis.starts.sines import SKIRT
 from feeddrive.effects.base import Effect, Port, number
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.chain.structural_mode import StructuralMode, resonates_within
+from feeddrive.effects.friction.friction_vs_position import FrictionVsPosition
 from feeddrive.effects.friction.stribeck import Stribeck
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.effects.source.position_spring import PositionSpring
+from feeddrive.simulate.driven import LoadMotion
 
 
 def as_payload(problem: Problem, found: Fit, count: int) -> tuple[Problem, Fit]:
@@ -91,25 +95,34 @@ def _with_force_in_spring(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
 
 
 def level_everywhere(problem: Problem, found: Fit) -> list[Effect]:
-    """Stribeck frictions of a set whose fall no recorded speed tells: each is another level of friction.
+    """Frictions of a set whose fall no recorded speed or place tells: each is another level of friction.
 
-    The fall is not told where one beyond the speed of any table leaves as much as the fitted one does.
+    The fall of a Stribeck friction, or of a bump over the stroke, is not told where one beyond the speed or the travel
+    of any table leaves as much as the fitted one does.
     """
     result: list[Effect] = []
     for place, effect in enumerate(found.effects):
-        if not isinstance(effect, Stribeck):
+        beyond = _without_fall(effect, scene_of(problem, found.effects).runs)
+        if beyond is None:
             continue
-        fastest = max(float(np.max(np.abs(run.table_velocity))) for run in scene_of(problem, found.effects).runs)
-        if number(effect.values["velocity"]) < fastest:
-            continue
-        beyond = effect.with_values(velocity=effect.parameter("velocity").maximum)
         rest = (*found.effects[:place], beyond, *found.effects[place + 1 :])
-        held = len(read_coordinates(found.effects[: place + 1], problem.plant)) - 1  # its velocity, after its force
-        flat = fit(problem, rest, iterations=JOINT_ITERATIONS, still=[held])
+        before, here = (len(read_coordinates(found.effects[:end], problem.plant)) for end in (place, place + 1))
+        flat = fit(problem, rest, iterations=JOINT_ITERATIONS, still=[*range(before + 1, here)])  # all but its force
         left = min(flat, found, key=lambda one: one.squared_error)
         if flat.squared_error - found.squared_error < 2 * TOLD * variance_along(problem, left, found, flat):
             result.append(effect)
     return result
+
+
+def _without_fall(effect: Effect, runs: Sequence[LoadMotion]) -> Effect | None:
+    """A friction with its fall beyond every table; None for another law, or one that falls within what was recorded."""
+    if isinstance(effect, Stribeck):
+        key, seen = "velocity", max(float(np.max(np.abs(run.table_velocity))) for run in runs)
+    elif isinstance(effect, FrictionVsPosition) and number(effect.values["peak"]):
+        key, seen = "half_width", max(float(np.ptp(run.table_position)) for run in runs)
+    else:
+        return None
+    return None if number(effect.values[key]) < seen else effect.with_values(**{key: effect.parameter(key).maximum})
 
 
 def less_than_a_period(problem: Problem, found: Fit) -> list[Effect]:
