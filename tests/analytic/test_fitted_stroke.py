@@ -38,3 +38,11 @@ def test_the_same_stroke_is_no_word() -> None:
     plant, fitted = axis_plant("bench"), at_places([0.2, 0.4], 1.0)
     there = Judged(at_places([0.185, 0.3, 0.415], 0.0), plant, plant)
     assert beyond_fitted_stroke([fitted], [there]) == ()
+
+
+def test_a_recording_of_which_no_row_is_judged_is_no_word() -> None:
+    plant, fitted = axis_plant("bench"), at_places([0.2, 0.4], 1.0)
+    there = at_places([0.7], 0.0)
+    nothing = replace(there, counted=np.zeros_like(there.counted))
+    assert not nothing.judged_rows.any()
+    assert beyond_fitted_stroke([fitted], [Judged(nothing, plant, plant)]) == ()

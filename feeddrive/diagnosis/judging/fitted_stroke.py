@@ -43,10 +43,11 @@ def beyond_fitted_stroke(evidence: Sequence[Evidence], judged: Sequence[Judged])
     said = []
     for one in judged:
         place = one.evidence.recording[POSITION][one.evidence.judged_rows]
-        beyond = np.mean((place < low - NEAR * (high - low)) | (place > high + NEAR * (high - low)))
-        if round(100 * float(beyond)):
+        away = np.count_nonzero((place < low - NEAR * (high - low)) | (place > high + NEAR * (high - low)))
+        share = away / max(len(place), 1)
+        if round(100 * share):
             said.append(
-                f"{one.evidence.recording.name}: {percent(float(beyond))} of its rows lie beyond the stroke that was "
+                f"{one.evidence.recording.name}: {percent(share)} of its rows lie beyond the stroke that was "
                 f"fitted ({format_quantity(low, 'm')} to {format_quantity(high, 'm')}); what depends on the place is a "
                 "guess there: fit a recording of the whole stroke"
             )
