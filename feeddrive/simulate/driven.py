@@ -16,6 +16,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 from scipy.interpolate import make_interp_spline
+from scipy.ndimage import uniform_filter1d
 
 from feeddrive.effects.base import TransmissionEffect
 from feeddrive.engine.engine import Feed, rested, run_machine
@@ -39,8 +40,8 @@ GRID = 0.5e-3
 """Time between the steps of a motion at most [s]: what friction does in a reversal comes to the motor by the torsion
 of the screw, which lets little through beyond 1 kHz."""
 
-TORQUE = 4
-"""Place of the motor torque among what is shown."""
+TABLE, TORQUE, FORCE = 2, 4, 5
+"""Places of the table position, the motor torque, and the nut's force on the table, among what is shown."""
 
 LEANING = 1e-6
 """Stretch beyond a flank [m] that the search for the load's rest on it begins with: within the play is no slope."""
@@ -56,14 +57,21 @@ class FlankRests:
     Attributes:
         samples: rising, shape (k,).
         sides: direction in which the motor pushes, +1 or -1, shape (k,).
+        forgotten: samples in which a load on a flank forgets how it came to it.
+        period: samples of its ringing there.
+        ringing: rms of it that counts as rest [m]; 0 where every rest begins anew.
     """
 
     samples: IntegerArray
     sides: FloatArray
+    forgotten: int = 1
+    period: int = 1
+    ringing: float = 0.0
 
     def at_steps(self, every: int) -> FlankRests:
         """The first steps of so many rows that the rests have begun at."""
-        return FlankRests(-(-self.samples // every), self.sides)
+        forgotten, period = (-(-samples // every) for samples in (self.forgotten, self.period))
+        return FlankRests(-(-self.samples // every), self.sides, forgotten, period, self.ringing)
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,10 +227,16 @@ def simulate_steps(
     shown[:, 0] = np.array(first).ravel()
     torque[0] = shown[TORQUE, 0]
     anew = _anew(plant, rests)
+
+    def resting(sample: int) -> bool:
+        past = slice(None, sample + 1)
+        behind = shown[TABLE, past] - plant.chain.motor_radius * motion.angle[motion.samples][past]
+        return rests is not None and _rests_there(behind, shown[FORCE, past], anew[sample], rests)
+
     begun_at = sorted({*range(0, count - 1, max(1, STRETCH // motion.substeps)), *anew})
     reports = []
     for sample, end in zip(begun_at, [*begun_at[1:], count - 1], strict=True):
-        if sample in anew:
+        if sample in anew and not resting(sample):
             at = sample * motion.substeps
             given = motion.angle[at], motion.speed[at], motion.acceleration[at], motion.time[at]
             rigid = np.array(beginning(*given[:2], values)).ravel()
@@ -243,6 +257,24 @@ def simulate_steps(
     phi, rate, x, velocity, needed, force = shown
     kept = motion.time[at], motion.angle[at], motion.speed[at]
     return LoadMotion(*kept, phi, rate, x, velocity, needed, force, joined(reports))
+
+
+def _rests_there(behind: FloatArray, force: FloatArray, place: float, rests: FlankRests) -> bool:
+    """Whether a simulated load rests on the flank of that place as the recorded one does.
+
+    It goes on then: begun anew it would ride on the flank without what the motor excites, which no rest is free of.
+
+    Args:
+        behind: way of the table behind the motor up to now [m], (n,).
+        force: of the nut on the table up to now [N], (n,).
+        place: of the nut against the table [m].
+        rests: which say what counts as rest.
+    """
+    past, half = slice(-rests.forgotten - rests.period, None), rests.period // 2
+    ringing = behind[past] - uniform_filter1d(behind[past], rests.period)
+    inner = ringing[half : len(ringing) - half]
+    quiet = len(inner) > 0 and float(np.mean(inner**2)) < rests.ringing**2
+    return quiet and float(np.mean(force[past])) * place > 0
 
 
 def _anew(plant: Plant, rests: FlankRests | None) -> dict[int, float]:

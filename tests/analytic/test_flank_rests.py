@@ -13,7 +13,7 @@ from feeddrive.plant.analysis.modes import held_modes
 from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording
-from feeddrive.simulate.driven import FlankRests, motor_motion, simulate_driven
+from feeddrive.simulate.driven import FlankRests, _rests_there, motor_motion, simulate_driven
 from feeddrive.typing import FloatArray
 
 PLANT = read_plant(find_plant("bench_axis"))
@@ -93,6 +93,29 @@ def test_a_load_begun_anew_rides_on_its_flank_as_in_steady_motion() -> None:
         # what the motor still accelerates by, and what it then moves the load on its spring, is far below a nanometre
         assert behind[sample : sample + 300] == pytest.approx(-lag, abs=2e-9)
     assert np.array_equal(anew.table_position[:600], free.table_position[:600])
+
+
+def shaken() -> FloatArray:
+    """Motor angle of strokes, shaken at 60 Hz by less than what lifts the load off its flank."""
+    return np.asarray(strokes() + 2e-6 / RADIUS * np.sin(2 * np.pi * 60 * TIME), dtype=np.float64)
+
+
+@pytest.mark.parametrize(("ringing", "goes_on"), [(0.4e-6, True), (0.1e-6, False)])
+def test_a_load_that_is_as_quiet_as_the_rests_goes_on_with_what_shakes_it(ringing: float, goes_on: bool) -> None:
+    """On its spring it is shaken by 0.2 µm rms against the motor; begun anew it would be where it rides without."""
+    plant = PLANT.with_effects(Backlash.of(width=PLAY))
+    motion = motor_motion(TIME[:2000], shaken()[:2000])
+    rests = FlankRests(np.array([1600]), np.array([-1.0]), 100, 17, ringing)
+    free, told = (simulate_driven(plant, motion, rests=each).table_position for each in (None, rests))
+    assert np.array_equal(free, told) == goes_on
+
+
+def test_a_load_on_the_other_flank_does_not_rest_there_however_quiet_it_is() -> None:
+    rests = FlankRests(np.array([1600]), np.array([1.0]), 100, 17, 1e-6)
+    behind, force = np.full(400, -0.1e-3), np.full(400, 90.0)
+    assert _rests_there(behind, force, 0.1e-3, rests)
+    assert not _rests_there(behind, -force, 0.1e-3, rests)
+    assert not _rests_there(behind + 2e-6 * np.sin(np.arange(400)), force, 0.1e-3, rests)
 
 
 def test_a_plant_without_play_goes_on() -> None:

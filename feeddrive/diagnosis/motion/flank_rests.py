@@ -90,7 +90,8 @@ def flank_rests(recording: Recording, plant: Plant, band: Band) -> tuple[FlankRe
         return None
     last_rest, last_loud = (np.maximum.accumulate(np.where(one, np.arange(len(one)), -1)) for one in (rests, loud))
     reach = math.ceil(band.sample_rate / band.edge)
-    return FlankRests(samples, sides), np.asarray(binary_dilation(last_loud > last_rest, iterations=reach))
+    told = FlankRests(samples, sides, length, period, ROUGH * math.sqrt(quiet))
+    return told, np.asarray(binary_dilation(last_loud > last_rest, iterations=reach))
 
 
 def _without_travel_errors(behind: FloatArray, place: FloatArray, gone: FloatArray) -> FloatArray:
