@@ -181,6 +181,11 @@ def test_what_is_planted_is_found_and_nothing_else(
     fitted, judged = recorded(kind, effects, 13), recorded(kind, effects, 14, judged=True)
     found, _ = diagnose(controlled_plant(tmp_path, "bench"), [fitted], [judged], simulate=simulate)
     assert [effect.name for effect in found.effects] == [effect.name for effect in effects]
+    for effect in found.effects:
+        if effect.name == "backlash":
+            width = effect.parameters["width"]
+            assert width.ci95 is not None and isinstance(width.ci95[1], float)
+            assert abs(width.value - 7.5e-6) < 1.5 * (width.ci95[1] - width.value)  # three deviations
     # free play makes the closed loop chaotic: its simulation does not stay beside the recording
     if simulate and not any(isinstance(effect, Backlash) for effect in effects):
         assert found.simulation is not None

@@ -73,7 +73,8 @@ def weights_to_fit(plant: Plant, evidence: AxisEvidence) -> BoolArray | FloatArr
     """Weights of the samples of the table position, shape (n,): 0 where it cannot be predicted.
 
     At a contact the encoder's own error is magnified. What it then moves the table by is expected beside the noise of
-    the scale: weighed as that alone, effects would be named for it.
+    the scale: weighed as that alone, effects would be named for it. It is held against that noise, and not against what
+    an effect that is missing still leaves: weights would stay even once it is found.
     """
     if not has_play(plant.effects):
         return np.ones(len(evidence.recording), dtype=bool)
@@ -81,7 +82,7 @@ def weights_to_fit(plant: Plant, evidence: AxisEvidence) -> BoolArray | FloatArr
     lost = _lost(missed, evidence)
     if "table_position" not in evidence.noise or (not lost.any() and np.max(missed.table) <= LINEAR * missed.cause):
         return ~lost
-    noise = evidence.unit("table_position")
+    noise = evidence.known_to("table_position")
     beyond = np.maximum(missed.table**2 - (LINEAR * missed.cause) ** 2, 0.0)
     weights: FloatArray = np.where(lost, 0.0, noise / np.sqrt(noise**2 + beyond))
     return weights
