@@ -49,6 +49,7 @@ from feeddrive.diagnosis.forms.curve_in_place import (
     with_level_in_curve,
 )
 from feeddrive.diagnosis.forms.flank import with_curve_for_flank
+from feeddrive.diagnosis.forms.load_power import with_power_of_load
 from feeddrive.diagnosis.forms.open_map import open_curves, with_curves_of
 from feeddrive.diagnosis.forms.simpler_law import (
     as_force,
@@ -218,6 +219,8 @@ def search(
             problem, found = at_rest(problem, found)
             stiff = with_declared_stiffness(Standing(problem, found), asked.now.count)
             problem, found = (problem, found) if stiff is None else (stiff.problem, stiff.fit)
+            bent = with_power_of_load(Standing(problem, found), asked.now.count)
+            problem, found = (problem, found) if bent is None else (bent.problem, bent.fit)
         back = None if left_out else with_value_back(problem, found)
         if back is not None:
             problem, found = back

@@ -62,10 +62,11 @@ FIXED = {
     ("stiffness_vs_position", "high"),
     ("ambient_drift", "time"),
     ("torque_constant_droop", "at_torque"),
+    ("load_dependent_friction", "at_force"),
 }
 """Parameters that choose the form of a law; they are tried, not fitted."""
 
-FORM = {"centre", "damping", "start", "break_away"}
+FORM = {"centre", "damping", "start", "break_away", "bend"}
 """Linear parameters that choose the form of a law, not its size."""
 
 LAWS_AT_ENDS = {
@@ -131,6 +132,8 @@ def _unused(effect: Effect, plant: Plant) -> set[str]:
         return set() if effect.values["middle_compliance"] else {"middle_compliance"}
     if effect.name == "presliding":
         return set() if effect.values["break_away"] else {"break_away"}
+    if effect.name == "load_dependent_friction":
+        return set() if effect.values["bend"] else {"bend"}
     if effect.name == "ambient_drift":
         return {"period", "amplitude"} if isinstance(effect.values["time"], tuple) else {"shape"}
     if effect.name == "friction_deviation":
