@@ -70,14 +70,10 @@ def _friction_deviation(v: Mapping[str, Value]) -> str:
     )
 
 
-ROLLING = 1 / 3
-"""Power of the load beyond the first by which balls that roll resist (Hertz)."""
-
-
 def _load_dependent_friction(v: Mapping[str, Value]) -> str:
     bend = _one(v["bend"])
     where = f" at {_one(v['at_force']):.3g} N, going with the power {1 + bend:.2f} of the load" if bend else ""
-    cause = "sliding" if abs(bend) < ROLLING / 2 else "rolling" if bend > 0 else "friction that the load saturates"
+    cause = "sliding" if not bend else "rolling" if bend > 0 else "friction that the load saturates"
     return (
         f"The screw loses {percent(_one(v['coefficient']), 2)} of the torque that the load takes{where}: {cause} in "
         "the nut, which an efficiency declared too high leaves out."
