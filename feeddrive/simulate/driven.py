@@ -229,9 +229,11 @@ def simulate_steps(
     anew = _anew(plant, rests)
 
     def resting(sample: int) -> bool:
-        past = slice(None, sample + 1)
+        if rests is None:
+            return False
+        past = slice(max(0, sample + 1 - rests.forgotten - rests.period), sample + 1)
         behind = shown[TABLE, past] - plant.chain.motor_radius * motion.angle[motion.samples][past]
-        return rests is not None and _rests_there(behind, shown[FORCE, past], anew[sample], rests)
+        return _rests_there(behind, shown[FORCE, past], anew[sample], rests)
 
     begun_at = sorted({*range(0, count - 1, max(1, STRETCH // motion.substeps)), *anew})
     reports = []
@@ -265,16 +267,16 @@ def _rests_there(behind: FloatArray, force: FloatArray, place: float, rests: Fla
     It goes on then: begun anew it would ride on the flank without what the motor excites, which no rest is free of.
 
     Args:
-        behind: way of the table behind the motor up to now [m], (n,).
-        force: of the nut on the table up to now [N], (n,).
+        behind: way of the table behind the motor, for as long as a contact takes to forget and a period before [m],
+            (n,).
+        force: of the nut on the table there [N], (n,).
         place: of the nut against the table [m].
         rests: which say what counts as rest.
     """
-    past, half = slice(-rests.forgotten - rests.period, None), rests.period // 2
-    ringing = behind[past] - uniform_filter1d(behind[past], rests.period)
+    ringing, half = behind - uniform_filter1d(behind, rests.period), rests.period // 2
     inner = ringing[half : len(ringing) - half]
     quiet = len(inner) > 0 and float(np.mean(inner**2)) < rests.ringing**2
-    return quiet and float(np.mean(force[past])) * place > 0
+    return quiet and float(np.mean(force)) * place > 0
 
 
 def _anew(plant: Plant, rests: FlankRests | None) -> dict[int, float]:

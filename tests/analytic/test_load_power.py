@@ -49,4 +49,7 @@ def test_a_bend_of_none_is_neither_computed_nor_fitted() -> None:
     plain, bent = (LoadDependentFriction.of(coefficient=0.07, bend=bend, at_force=AT) for bend in (0.0, 1 / 3))
     plant = read_plant(find_plant("bench_axis"))
     assert (left_out(plain), left_out(bent)) == (("bend",), ())
+    symbols = {"coefficient": ca.SX.sym("c"), "bend": ca.SX(0), "at_force": ca.SX.sym("at")}
+    made = plain.level(Motion(0.0, 0.0, force=ca.SX.sym("f"), radius=RADIUS), symbols)
+    assert not ca.depends_on(made, symbols["at_force"])
     assert [len(read_coordinates([one], plant)) for one in (plain, bent)] == [1, 2]

@@ -6,7 +6,7 @@
 |---|---|---|---|
 | c | coefficient | friction torque over the ideal torque of the transmitted force, at F0; it resists motion | 1 |
 | b | bend | power of the force beyond the first; 0 where friction is in proportion, 1/3 of rolling contacts | 1 |
-| F0 | at_force | transmitted force at which c holds; of no meaning where b is 0 | N |
+| F0 | at_force | transmitted force at which c holds, 1 kN if left out; of no meaning where b is 0 | N |
 | F | (motion) | transmitted force of the nut | N |
 | r | (chain) | lead / 2 pi | m/rad |
 | Tc | (declared) | Coulomb torque declared at the screw | N m |
@@ -17,7 +17,7 @@ Balls that roll under a Hertzian pressure resist by the 4/3 power of the force, 
 that is likelier, F0 being the rms of the recorded force. Within a thousandth of F0 about no force the power is that of
 a first one, so that the slope stays finite where b is negative.
 Dissipative: c is not negative. The slope over F has a corner at F = 0.
-Source: paper 000, eqs. (5), (6), to first order in f; Harris, Rolling Bearing Analysis, 4th ed., chapter 14 (b = 1/3).
+Source: paper 000, eqs. (5), (6), to first order in f. The power is an extension of our own.
 """
 
 from __future__ import annotations
