@@ -128,14 +128,10 @@ class Tabulated(Effect):
         """The values under `key` at a variable, an expression or an array of shape (n,); 0 where none are given."""
         if key not in self.tables:
             return 0.0
-        nodes, levels = _column(p[self.breakpoint_key]), _column(p[key])
+        nodes, levels = p[self.breakpoint_key], p[key]
         if isinstance(at, np.ndarray):
-            at = ca.DM(at)
-        if self.periodic:
-            at = at - p["period"] * ca.floor((at - nodes[0]) / p["period"])
-            # the first point again, a period later, so that the curve closes
-            nodes, levels = ca.vertcat(nodes, nodes[0] + p["period"]), ca.vertcat(levels, levels[0])
-        return interpolate(at, nodes, levels)
+            return interpolate(at, nodes, levels, self.period)
+        return interpolate(at, _column(nodes), _column(levels), p["period"] if self.periodic else 0.0)
 
     def at_motion(self, motion: Motion, p: Mapping[str, Expression], key: str) -> Expression:
         """The values under `key` at a motion of the port."""

@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import casadi as ca
+import numpy as np
 
 from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature, listed, number
 from feeddrive.typing import Expression
@@ -57,10 +58,19 @@ class FrictionVsPosition(FrictionEffect):
         return bump, interpolate(x, p["position"], p["delta_force"])
 
 
-def interpolate(x: Expression, nodes: Expression, levels: Expression) -> Expression:
-    """Linear interpolation between nodes, constant outside; nodes ascending, shapes (k,) and (k,)."""
+def interpolate(x: Expression, nodes: Expression, levels: Expression, period: Expression = 0.0) -> Expression:
+    """Linear interpolation between nodes, constant outside; nodes ascending, shapes (k,) and (k,).
+
+    With a period the curve comes again after it, and closes. An array is interpolated by NumPy: as an expression every
+    stretch between two nodes is one over the whole array.
+    """
+    if isinstance(x, np.ndarray):
+        return np.interp(x, np.ravel(nodes), np.ravel(levels), period=period or None)
     if not hasattr(nodes, "numel") or nodes.numel() == 1:
         return levels
+    if not (isinstance(period, float) and period == 0.0):
+        x = x - period * ca.floor((x - nodes[0]) / period)
+        nodes, levels = ca.vertcat(nodes, nodes[0] + period), ca.vertcat(levels, levels[0])
     result = levels[0]
     for i in range(nodes.numel() - 1):
         slope = (levels[i + 1] - levels[i]) / (nodes[i + 1] - nodes[i])
