@@ -21,7 +21,7 @@ PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-slow check recovery recovery-fleet recovery-parts recovery-smoke fuzz bench lint types format docs develop clean
+.PHONY: help demo test test-slow check recovery recovery-fleet recovery-rivals recovery-parts recovery-smoke fuzz bench lint types format docs develop clean
 
 help: ## show this list
 	@echo "make TARGET, where TARGET is"
@@ -44,6 +44,9 @@ recovery: $(VENV)/.recovery ## plant every effect, diagnose it, write docs/recov
 
 recovery-fleet: $(VENV)/.developing ## machines drawn at random, diagnosed; goes on where it was stopped
 	$(ONE_THREAD) $(BIN)/python -m tests.recovery.fleet $(FLEET) --out build/fleet --resume --workers $(WORKERS) --page docs/recovery.md
+
+recovery-rivals: $(VENV)/.recovery ## sparse regression and a black box on the cases of the fleet; goes on where it was stopped
+	$(ONE_THREAD) $(BIN)/python -m tests.recovery.fleet_rivals --out build/fleet --page docs/recovery.md
 
 recovery-parts: $(VENV)/.developing ## machines described by their parts, recorded by finite elements; goes on where it was stopped
 	$(ONE_THREAD) $(BIN)/python -m tests.recovery.parts --out build/parts --resume --page docs/recovery.md
