@@ -28,6 +28,8 @@ def command(
 
     if out is None:
         raise InputError("--out is missing", "", "give a file for the page, such as --out bench.html")
+    if out.is_dir():
+        raise InputError("is a folder, not a file", str(out), "name a file for the page, such as --out bench.html")
     with warnings_as_lines():
         axis = load(find_plant(plant))
         bench(axis, controller=scenario or None, diagnosis=diagnosis, payload=payload).save(out)

@@ -94,7 +94,7 @@ def _print_summary(found: Diagnosed, report: Path) -> None:
     for sentence in found.sentences:
         console.print(printable(sentence))
     errors = found.errors.listing()
-    console.print(table("on data not fitted", errors.headings, errors.rows))
+    console.print(table("on data not fitted, before → after", errors.headings, errors.rows))
     for line in (*found.remarks, f"report: {report.resolve()}"):
         console.print(printable(line))
 

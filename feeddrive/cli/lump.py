@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import JsonOption, deliver, tables_of, warnings_as_lines
+from feeddrive.cli.output import JsonOption, deliver, print_written, tables_of, warnings_as_lines
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import load
 
@@ -29,5 +29,7 @@ def command(
     if out is not None:
         found.save(out)
     tables = tables_of(found.tables())
-    tables[-1].caption = f"Written to {out}." if out is not None else "Name a file with --out to write it."
+    if out is None:
+        tables[-1].caption = "Name a file with --out to write it."
     deliver(found.record() | {"file": str(out) if out is not None else None}, tables, as_json, None)
+    print_written(out, as_json)

@@ -59,7 +59,8 @@ class Keys(Shown):
         records += [{"section": path, "meaning": text} for path, text in self.sections.items()]
         rows += [[path, "section", "", "", "", text] for path, text in self.sections.items()]
         title = f"{self.path}: {self.meaning}" if self.path else self.meaning
-        return Listing(title, ("key", "unit", "range", "usual", "needed", "meaning"), rows, records)
+        caption = "" if self.keys else f"feeddrive keys {next(iter(self.sections), 'plant')} shows what is in one"
+        return Listing(title, ("key", "unit", "range", "usual", "needed", "meaning"), rows, records, caption)
 
 
 def keys(path: str = "") -> Keys:

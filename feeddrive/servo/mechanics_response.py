@@ -97,7 +97,8 @@ class Case:
             return plant
         loaded = plant.with_effects(Payload.of(mass=self.payload))
         if not loaded.chain_values()["table_mass"] > 0:
-            raise InputError(f"a payload of {self.payload:g} kg leaves no mass", plant.name, "give a smaller one")
+            mend = f"take away less than the {plant.chain_values()['table_mass']:g} kg that move"
+            raise InputError(f"a payload of {self.payload:g} kg leaves no mass", plant.name, mend)
         return loaded
 
 

@@ -65,12 +65,17 @@ def read_new(
     for number, source in enumerate(new, 1):
         progress(f"reading {number} of {len(new)}: {source.key}")
         kept = _with_source(plant, source, options, kept)
-        if time.monotonic() - saved > SAVED_EVERY:
+        if time.monotonic() - saved > SAVED_EVERY and _has_used(kept):
             save_checkpoint(out, kept)
             saved = time.monotonic()
-    if new or gone:
+    if (new or gone) and _has_used(kept):
         save_checkpoint(out, kept)
     return kept, len(new), tuple(notes)
+
+
+def _has_used(kept: Checkpoint) -> bool:
+    """Whether any recording counts: where none does there is no result, and nothing is written."""
+    return any(entry.status == USED for entry in kept.entries.values())
 
 
 def _known(entry: Entry | None, source: Source) -> bool:

@@ -209,6 +209,21 @@ def test_three_recordings_and_an_effect_of_all(rigid: Plant) -> None:
     assert "torque_ripple.amplitude" in result.changes.shared
 
 
+def test_what_changed_and_went_back_is_told_both_ways(rigid: Plant) -> None:
+    """A level of one day alone: the day after it is as on the first, which no comparison with the first one tells."""
+    runs = [
+        rigid_run("monday", Truth()),
+        rigid_run("tuesday", Truth(viscous=0.8, seed=2), slow=1.3),
+        rigid_run("friday", Truth(seed=3), slow=1.1),
+    ]
+    result, _ = diagnose(rigid, runs)
+    told = [(one.parameter, one.against, one.recording, one.difference.value) for one in result.changes.changes]
+    assert [one[:3] for one in told] == [
+        ("viscous_factor", "monday", "tuesday"), ("viscous_factor", "tuesday", "friday")
+    ]  # fmt: skip
+    assert [one[3] for one in told] == pytest.approx([-0.2, 0.2], rel=0.15)
+
+
 def bench(name: str, effects: tuple[object, ...], seeds: tuple[int, int], **off: float) -> tuple[Recording, Recording]:
     """A pair of short recordings of the bench axis."""
     both = recording_pair(BENCH, effects, seeds, (8.0, 6.0), off=off)  # type: ignore[arg-type]

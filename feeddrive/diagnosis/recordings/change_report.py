@@ -72,6 +72,28 @@ def parameter_changes(problem: Problem, changes: Changes, questions: Sequence[Qu
     return tuple(result)
 
 
+def gone_back(
+    problem: Problem, changes: Changes, names: Sequence[str], stated: Sequence[ParameterChange]
+) -> tuple[ParameterChange, ...]:
+    """What was other in one recording and is as in the first again in the next: a return that no first value tells.
+
+    Args:
+        problem: of the fit.
+        changes: of it.
+        names: of the recordings.
+        stated: changes of each recording against the first.
+    """
+    against_first = {(one.recording, one.effect, one.parameter, one.port) for one in stated}
+    result: list[ParameterChange] = []
+    for number in range(2, len(names)):
+        question = Question(number, names[number], number - 1, names[number - 1], fitted=True)
+        for one in parameter_changes(problem, changes, [question]):
+            key = one.effect, one.parameter, one.port
+            if (names[number - 1], *key) in against_first and (names[number], *key) not in against_first:
+                result.append(one)
+    return tuple(result)
+
+
 def _without_phase_of_none(found: list[Moved]) -> list[Moved]:
     """The parameters of a target; without a phase where there is no sine to have one in one of the recordings."""
     sines = [one for one in found if one.key == "amplitude"]

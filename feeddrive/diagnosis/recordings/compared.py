@@ -29,6 +29,7 @@ from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import declining
 from feeddrive.diagnosis.recordings.change_report import (
     Question,
+    gone_back,
     is_as_declared,
     is_none,
     parameter_changes,
@@ -75,6 +76,7 @@ def compared_recordings(searched: Searched, judged: Sequence[Judged]) -> Compare
     if own is not None:
         questions = [Question(n, names[n], 0, names[0], fitted=True) for n in range(1, len(names))]
         stated = parameter_changes(found.problem, own, questions)
+        stated = (*stated, *gone_back(found.problem, own, names, stated))
         result = RecordingChanges(
             per_recording=per_recording(found.problem, own, names),
             shared=shared_parameters(found.problem, found.fit.effects, own),

@@ -308,7 +308,8 @@ def rest_in_words(unit: str, rest: Unexplained, lost: Sequence[Dependence], afte
     if above.is_left:
         sentences = [f"Left on the judged data: {rms} rms, noise floor {floor} rms; {share} is above the noise."]
     else:
-        sentences = [f"Nothing is left above the noise: {rms} rms on the judged data, noise floor {floor} rms "
+        surely = "surely " if above.share > 2 * above.standard_error else ""
+        sentences = [f"Nothing is left {surely}above the noise: {rms} rms on the judged data, noise floor {floor} rms "
                      f"({share} above it)."]  # fmt: skip
     if rest.depends_on:
         sentences.append(f"It follows {'; '.join(_followed(one) for one in rest.depends_on)}.")

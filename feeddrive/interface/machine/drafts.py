@@ -35,9 +35,11 @@ class Parts(Shown):
 
     Attributes:
         found: in the order of the catalogue.
+        nearest: where there are none, what parts have that are nearest to it.
     """
 
     found: Sequence[CataloguePart]
+    nearest: str = ""
 
     def __iter__(self) -> Iterator[CataloguePart]:
         """The parts."""
@@ -62,7 +64,8 @@ class Parts(Shown):
             }
             for one in self.found
         ]
-        return Listing(f"{len(rows)} parts", ("name", "maker", "kind", "size", "values", "source"), rows, records)
+        headings = ("name", "maker", "kind", "size", "values", "source")
+        return Listing(f"{len(rows)} parts", headings, rows, records, self.nearest)
 
 
 def list_parts(kind: str = "", **wanted: Quantity) -> Parts:
@@ -82,21 +85,32 @@ def list_parts(kind: str = "", **wanted: Quantity) -> Parts:
     """
     if kind and kind not in KINDS:
         raise InputError(f'no kind "{kind}"', "parts", nearest_choice(kind, KINDS))
-    found = [part for part in catalogue().values() if kind in ("", part.kind)]
+    found, nearest = [part for part in catalogue().values() if kind in ("", part.kind)], ""
     for name, value in wanted.items():
         if name not in _WANTED.get(kind, {}):
             mend = f"of a {kind} one can ask for {', '.join(_WANTED[kind])}" if kind else "name a kind first"
             raise InputError(f"{name} is no property of a {kind or 'part'}", "parts", mend)
         place, unit = _WANTED[kind][name]
         number = si(value, unit, name)
-        found = [part for part in found if _is(part, place, unit, number, name == "torque")]
-    return Parts(tuple(found))
+        before, found = found, [part for part in found if _is(part, place, unit, number, name == "torque")]
+        if before and not found:
+            held = {_held(part, place, unit): _text(part, place) for part in before}
+            near = sorted(sorted(held, key=lambda own: abs(own - number))[:3])
+            nearest = f"none has a {name} of {value}; the nearest have {', '.join(held[own] for own in near)}"
+    return Parts(tuple(found), nearest)
+
+
+def _text(part: CataloguePart, place: str) -> str:
+    section, _, key = place.rpartition(".")
+    return str(part.sections[section][key] if section else part.further[key])
+
+
+def _held(part: CataloguePart, place: str, unit: str) -> float:
+    return parse(_text(part, place), unit, part.name)
 
 
 def _is(part: CataloguePart, place: str, unit: str, wanted: float, at_least: bool) -> bool:
-    section, _, key = place.rpartition(".")
-    held = part.sections[section][key] if section else part.further[key]
-    own = parse(held, unit, part.name)
+    own = _held(part, place, unit)
     return own >= wanted * (1 - 1e-9) if at_least else math.isclose(own, wanted, rel_tol=0.01)
 
 

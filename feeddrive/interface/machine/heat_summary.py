@@ -33,7 +33,7 @@ class HeatSummary(Shown):
         values = [[key, format_quantity(value, unit), source] for key, value, unit, source in self._values()]
         records = [{"value": key, "quantity": v, "unit": unit, "source": s} for key, v, unit, s in self._values()]
         tables = (
-            Listing(f"{heat.name}, heat", ("value", "quantity", "source"), values, records),
+            Listing(f"{heat.name}, heat", ("quantity", "value", "source"), values, records),
             Listing(
                 "Films, contact and heats, effects not counted",
                 ("speed", "film of screw", "of nut", "contact", "heat of nut", "front bearing", "rear"),

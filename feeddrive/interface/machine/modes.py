@@ -149,7 +149,7 @@ class Lumped(Shown):
         at = format_quantity(self.found.position, "m")
         title = f"{self.axis_name} as three inertias, table at {at}"
         left = Listing("Not in three inertias", ("what",), [[line] for line in self.found.left_out])
-        return (Listing(title, ("value", "quantity"), values), self.listing(), *([left] if left.rows else []))
+        return (Listing(title, ("quantity", "value"), values), self.listing(), *([left] if left.rows else []))
 
     def record(self) -> dict[str, Any]:
         """Everything as plain values, SI."""

@@ -120,8 +120,8 @@ class Summary(Shown):
         records = [{"value": key, "quantity": v, "unit": unit, "source": s} for key, v, unit, s in self._values()]
         parts = [[key, format_quantity(one.value, one.unit), self._source(key)] for key, one in plant.data.items()]
         tables = [
-            Listing(f"{plant.name}, {plant.chain.structure}", ("value", "quantity", "source"), values, records),
-            Listing("Parts as declared", ("part", "quantity", "source"), parts),
+            Listing(f"{plant.name}, {plant.chain.structure}", ("quantity", "value", "source"), values, records),
+            Listing("Parts as declared", ("part", "value", "source"), parts),
             Listing(f"Inertia{at}", ("moves with", "at the motor", "at the table", "share"), self._inertias()),
             Listing(
                 "What constant motion takes in + and in − direction; signs are those of the axis",

@@ -76,6 +76,14 @@ class Effects(Shown):
         return Listing(title, ("effect", "value of", "value", "95 % interval"), rows, records)
 
 
+def _changed(before: str, after: str) -> str:
+    """A figure before and after, its unit once; one where they are alike."""
+    if before == after:
+        return after
+    number, _, unit = before.partition(" ")
+    return f"{number} → {after}" if after.endswith(unit) else f"{before} → {after}"
+
+
 class Errors(Shown):
     """Errors of each channel on data not fitted, before and after."""
 
@@ -87,10 +95,8 @@ class Errors(Shown):
         rows = [
             [
                 one.name,
-                error_text(one.before.rms, one.unit),
-                error_text(one.after.rms, one.unit),
-                share_text(one.before.relative),
-                share_text(one.after.relative),
+                _changed(*(error_text(rms, one.unit) for rms in (one.before.rms, one.after.rms))),
+                _changed(*(share_text(share) for share in (one.before.relative, one.after.relative))),
                 error_text(one.noise_rms, one.unit),
             ]
             for one in self._diagnosis.channels
@@ -107,7 +113,7 @@ class Errors(Shown):
             }
             for one in self._diagnosis.channels
         ]
-        headings = ("channel", "error before", "after", "relative before", "after", "sensor noise")
+        headings = ("channel", "error", "relative", "sensor noise")
         return Listing("Errors on data not fitted", headings, rows, records)
 
 

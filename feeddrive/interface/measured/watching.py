@@ -14,7 +14,7 @@ from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis
 from feeddrive.interface.quantities import Quantity, positive
 from feeddrive.interface.shown import Listing, Shown, finite
-from feeddrive.output_folder import output_folder
+from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.trend.change_searches import searched_events
 from feeddrive.trend.checkpoint import USED, save_checkpoint
 from feeddrive.trend.events import Event
@@ -174,6 +174,7 @@ def watch(
     if not plant.has_motion:
         raise InputError("the plant declares heat alone", plant.name, "declare the motion of the axis")
     target = Path(out) if out is not None else place.parent / f"{place.name or 'folder'}{PLACE}"
+    refuse_unusable(target)
     options = Options(
         None if map is None else Path(map),
         decimal,

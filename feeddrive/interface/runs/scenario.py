@@ -105,7 +105,7 @@ class Run(Shown):
             rows += [[f"life, {nut}", text] for nut, text in life.listing().rows]
             records += life.listing().records
         title = f"{self.result.scenario.name}, {self.result.scenario.plant.name}"
-        return Listing(title, ("figure", "quantity"), rows, records)
+        return Listing(title, ("figure", "value"), rows, records)
 
     def to_pandas(self) -> pandas.DataFrame:
         """The exact series as a DataFrame over the time [s]; columns SI, their unit in brackets.
@@ -159,7 +159,7 @@ class Run(Shown):
             ["motor torque rms", format_quantity(torque["rms"], "N m")],
             ["motor torque maximum", format_quantity(torque["maximum"], "N m")],
         ]
-        whole = Listing(f"{found['name']}, {found['plant']}", ("figure", "quantity"), rows)
+        whole = Listing(f"{found['name']}, {found['plant']}", ("figure", "value"), rows)
         return (whole, *(figure_listing(one) for one in self.figures))
 
     def save(self, path: str | Path) -> Path:
@@ -253,7 +253,7 @@ def figure_listing(one: dict[str, Any]) -> Listing:
     if one["kind"] == "positioning":
         lengths = {key: value for key, value in one.items() if isinstance(value, float) and key != "average"}
         rows = [[key.replace("_", " "), format_quantity(value, "m")] for key, value in lengths.items()]
-        return Listing(f"{title}, {one['standard']}", ("figure", "quantity"), rows)
+        return Listing(f"{title}, {one['standard']}", ("figure", "value"), rows)
     if "points" in one:
         keys = list(one["points"][0])
         rows = [[_shown(key, point[key]) for key in keys] for point in one["points"]]
@@ -261,7 +261,7 @@ def figure_listing(one: dict[str, Any]) -> Listing:
         return Listing(title, keys, rows[:_SHOWN_POINTS] + more)
     shown = {key: value for key, value in one.items() if key not in ("kind", *_LISTS)}
     rows = [[key.replace("_", " "), _shown(key, value, one)] for key, value in shown.items()]
-    return Listing(title, ("figure", "quantity"), rows)
+    return Listing(title, ("figure", "value"), rows)
 
 
 def _shown(key: str, value: Any, one: dict[str, Any] | None = None) -> str:

@@ -193,7 +193,10 @@ def columns_of(understood: Understood, where: str, of_command: str = "") -> dict
     if not understood.channels:
         names = ", ".join(signal.name for signal in understood.trace.signals[:8])
         what = f"no signal of this {understood.trace.format} is known by its name (it holds {names})"
-        raise InputError(what, where, "say which is which by --channel 'motor_torque=NAME [N m]' of feeddrive read")
+        mend = (
+            "say which is which in a mapping file, --map, or by --channel 'motor_torque=NAME [N m]' of feeddrive read"
+        )
+        raise InputError(what, where, mend)
     return {"time": understood.time, **understood.channels}
 
 

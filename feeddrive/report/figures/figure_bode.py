@@ -16,12 +16,15 @@ from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _MARKS = {Kind.RESONANCE: ("^", 6.0, "bottom"), Kind.ANTI_RESONANCE: ("v", -6.0, "top")}
 _LABELLED = 3
 """Curves up to which resonances carry their frequency."""
 _STYLES = ("-", "--", "-.")
-"""Of curves that are few: one that lies on another lets it be seen."""
+"""Of curves that are few, or of motions: one that lies on another lets it be seen."""
+_INSIDE = 4
+"""Entries of a legend up to which it stands inside a panel."""
 _COHERENT = 0.8
 
 
@@ -42,9 +45,8 @@ def bode_figure(family: Family, measured: Measured | None = None) -> ReportFigur
     panels = list(figure.subplots(len(heights), 1, sharex=True, height_ratios=heights))
     if measured is not None:
         _draw_measured(panels, measured, magnitude_unit(family.curves[0].response.unit)[1])
-    few = len(family.curves) <= len(_STYLES)
-    for i, (curve, colour) in enumerate(zip(family.curves, _colours(len(family.curves)), strict=True)):
-        _draw(panels[0], panels[1], curve, colour, _STYLES[i] if few else "-", _label(curve.case, family))
+    for curve, colour, style in zip(family.curves, *_looks(family), strict=True):
+        _draw(panels[0], panels[1], curve, colour, style, _label(curve.case, family))
         if len(family.curves) <= _LABELLED and curve.margins is None and curve.closed is None:
             _mark(panels[0], curve, colour, len(family.curves) == 1)
     _reference_lines(panels[0], panels[1], family)
@@ -56,7 +58,7 @@ def bode_figure(family: Family, measured: Measured | None = None) -> ReportFigur
     _logarithmic(panels[-1], family)
     panels[-1].set_xlabel("frequency [Hz]", fontsize=9)
     if len(family.curves) > 1 or measured is not None:
-        _legend(panels[0], len(family.curves) + (measured is not None))
+        _legend(figure, panels[0], len(family.curves) + (measured is not None))
     figure.align_ylabels(panels)
     return ReportFigure(f"bode_{family.stem}", f"Bode plot: {family.title}", _caption(family, measured), figure)
 
@@ -166,6 +168,20 @@ def _draw_measured(panels: list[Axes], measured: Measured, more: float) -> None:
     dress(panels[2], "", "coherence")
 
 
+def _looks(family: Family) -> tuple[list[Any], list[str]]:
+    """Colour and style of every curve: with many a colour for a position and payload, a style for a motion."""
+    cases = [curve.case for curve in family.curves]
+    if len(cases) <= len(_STYLES):
+        return _colours(len(cases)), list(_STYLES[: len(cases)])
+    places = list(dict.fromkeys((case.position, case.payload) for case in cases))
+    motions = list(dict.fromkeys(case.motion for case in cases))
+    colours = _colours(len(places))
+    return (
+        [colours[places.index((case.position, case.payload))] for case in cases],
+        [_STYLES[motions.index(case.motion) % len(_STYLES)] for case in cases],
+    )
+
+
 def _colours(count: int) -> list[Any]:
     if count == 1:
         return [AFTER]
@@ -187,8 +203,13 @@ def _label(case: Case, family: Family) -> str:
     return ", ".join(parts) or "linear"
 
 
-def _legend(axes: Axes, count: int) -> None:
-    axes.legend(fontsize=8, frameon=False, ncols=1 + (count > 4) + (count > 9), loc="lower left", handlelength=1.6)
+def _legend(figure: Figure, axes: Axes, count: int) -> None:
+    """Inside the panel where it is short; below all of them where it would lie over the curves."""
+    options: dict[str, Any] = {"fontsize": 8, "frameon": False, "handlelength": 2.4}
+    if count <= _INSIDE:
+        axes.legend(loc="lower left", **options)
+    else:
+        figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, **options)
 
 
 def _logarithmic(axes: Axes, family: Family) -> None:

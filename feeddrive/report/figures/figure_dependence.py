@@ -126,11 +126,21 @@ def _panel(axes: Axes, row: _Row, clouds: list[_Cloud]) -> None:
         axes.plot(cloud.variable[part], cloud.residual[part], ".", color=cloud.colour, ms=size, alpha=depth, mew=0.0)
         bins = cloud.bins
         axes.fill_between(bins.centre, bins.low, bins.high, color=cloud.colour, alpha=0.25, lw=0.0)
-        axes.plot(bins.centre, bins.median, color=cloud.colour, lw=1.8, label=f"{cloud.label} {_share(bins.share)}")
+        alone = _alone(np.isfinite(bins.low))  # between two thin bins neither a band nor a line can be drawn
+        axes.vlines(bins.centre[alone], bins.low[alone], bins.high[alone], color=cloud.colour, alpha=0.25, lw=4.0)
+        label = f"{cloud.label} {_share(bins.share)}"
+        axes.plot(bins.centre, bins.median, "o-", color=cloud.colour, ms=2.6, lw=1.8, label=label)
     dress(axes, row.label, axis_label("residual", row.error.unit))
     if row.words == "motor angle":
         axes.set_xticks(range(0, 361, 90))
     legend_above(axes)
+
+
+def _alone(known: BoolArray) -> BoolArray:
+    """Bins, (n,), neither of whose neighbours is known."""
+    beside = np.concatenate([[False], known, [False]])
+    alone: BoolArray = known & ~beside[:-2] & ~beside[2:]
+    return alone
 
 
 def _share(share: float) -> str:
@@ -156,8 +166,8 @@ def _caption(rows: list[_Row]) -> str:
     strongest = [row.words for row in rows if row.clouds[0].bins.share > 0.2]
     seen = f" Here it depends on {joined(strongest)}." if strongest else " Here no strong dependence is seen."
     look = (
-        "Line: median, over position and angle the mean of both directions' medians; band: 10 to 90 %. A line that is "
-        "curved or stepped is something that the model lacks."
+        "Line and dots: median, over position and angle the mean of both directions' medians; band and bars: 10 to "
+        "90 %. A line that is curved or stepped is something that the model lacks."
     )
     share = "In brackets: the share of the squared residual that the line alone explains."
     if len(rows[0].clouds) == 1:

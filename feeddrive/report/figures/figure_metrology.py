@@ -125,7 +125,8 @@ def friction_figure(result: ScenarioResult, one: Evaluated) -> ReportFigure:
         axes.errorbar(speed, torque, spread, fmt=style, color=colour, markersize=6 - 2 * side, linewidth=1, capsize=2,
                       label=label, fillstyle=filled)  # fmt: skip
     _plain_logarithm(axes)
-    axes.set_ylim(bottom=0)
+    highest = max((abs(point.torque) + point.spread for point in points), default=0.0)
+    axes.set_ylim(0, 1.1 * highest if highest > 0 else None)
     dress(axes, "velocity [m/min]", "torque at the motor [N m]", "mean and standard deviation at constant velocity")
     legend_above(axes, 2)
     factor = 1 / result.scenario.plant.chain.motor_radius

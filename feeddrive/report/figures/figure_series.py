@@ -1,7 +1,8 @@
-"""Figure of one channel over one judged recording: the signal, its residual before and after, and a closer look."""
+"""Figure of one channel over one judged recording: signal, residual before and after, what is left, a closer look."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+Residual = tuple[str, str, FloatArray]
+"""Label, colour and samples, (n,)."""
+
 _CLOSER_SHARE = 0.02
 _CLOSER_SAMPLES = 400
 _VISIBLE_SHARE = 0.01
@@ -40,7 +44,7 @@ class _Picture:
     time_unit: str
     channel: ChannelResult
     series: ChannelSeries
-    residuals: list[tuple[str, str, FloatArray]]
+    residuals: list[Residual]
     signal: Scale
     error: Scale
 
@@ -83,23 +87,29 @@ def _picture(
 
 
 def _draw(picture: _Picture) -> Figure:
-    """The three panels."""
-    figure = new_figure(6.6)
-    top, middle, bottom = figure.subplots(3, 1, height_ratios=(2, 3, 3))
-    name = plain(picture.channel.name)
+    """The signal, its residuals, what is left where something was found, and a stretch as the eye can see it."""
+    pair, overlay = len(picture.residuals) > 1, picture.overlay
+    closer = overlay or not pair
+    heights = (2, 3, *([3] * (pair + closer)))
+    figure = new_figure(0.825 * sum(heights))
+    top, middle, *rest = figure.subplots(len(heights), 1, height_ratios=heights)
+    name, time = plain(picture.channel.name), axis_label("time", picture.time_unit)
+    residual = axis_label("residual", picture.error.unit)
     _signal_lines(top, picture, slice(None), with_predictions=False)
-    dress(top, axis_label("time", picture.time_unit), axis_label(_short(name), picture.signal.unit), "measured")
-    _residual_lines(middle, picture, slice(None))
-    dress(
-        middle,
-        axis_label("time", picture.time_unit),
-        axis_label("residual", picture.error.unit),
-        "measured minus predicted",
-    )
-    middle.sharex(top)
+    dress(top, time, axis_label(_short(name), picture.signal.unit), "measured")
+    _residual_lines(middle, picture, picture.residuals, slice(None))
+    dress(middle, time, residual, "measured minus predicted")
+    whole = [top, middle]
+    if pair:
+        _residual_lines(rest[0], picture, picture.residuals[1:], slice(None))
+        dress(rest[0], time, residual, "what is left, enlarged")
+        whole.append(rest[0])
+    if closer:
+        _closer_look(rest[-1], picture)
+    for axes in whole[1:]:
+        axes.sharex(top)
     top.margins(x=0.01)
-    _closer_look(bottom, picture)
-    for axes in (top, middle):
+    for axes in whole:
         _shade_left_out(axes, picture)
     return figure
 
@@ -124,10 +134,10 @@ def _signal_lines(axes: Axes, picture: _Picture, part: slice, with_predictions: 
         legend_above(axes)
 
 
-def _residual_lines(axes: Axes, picture: _Picture, part: slice) -> None:
+def _residual_lines(axes: Axes, picture: _Picture, residuals: Sequence[Residual], part: slice) -> None:
     """Residuals with the band of the sensor noise: the largest of 60 000 samples is about 4 times the rms."""
     factor = picture.error.factor
-    for label, colour, residual in picture.residuals:
+    for label, colour, residual in residuals:
         time, values = envelope(picture.time[part], residual[part] * factor)
         axes.plot(time, values, color=colour, lw=0.8, label=label)
     if picture.channel.noise_rms > 0.0:
@@ -144,7 +154,7 @@ def _closer_look(axes: Axes, picture: _Picture) -> None:
         _signal_lines(axes, picture, part, with_predictions=True)
         label = axis_label(_short(plain(picture.channel.name)), picture.signal.unit)
     else:
-        _residual_lines(axes, picture, part)
+        _residual_lines(axes, picture, picture.residuals, part)
         label = axis_label("residual", picture.error.unit)
     dress(axes, axis_label("time", picture.time_unit), label, "closer look, where the residual swings most")
     axes.margins(x=0.01)
@@ -173,13 +183,15 @@ def _shade_left_out(axes: Axes, picture: _Picture) -> None:
 
 def _caption(picture: _Picture) -> str:
     """What to look at."""
-    first = "Top: the measured signal. Middle: what the prediction misses. Grey stretches were left out."
+    first = "Top: the measured signal. Below: what the prediction misses. Grey stretches were left out."
     if len(picture.residuals) == 1:
         look = "A residual inside the dashed lines is sensor noise: the declared plant says all there is to say."
     else:
-        look = "Look for orange that turns into blue inside the dashed lines: what is left there is sensor noise."
+        look = "Then what is left alone, on its own scale: inside the dashed lines it is sensor noise."
     if picture.overlay:
         return (
             f"{first} {look} Bottom: measured and predicted over a short stretch, where their difference swings most."
         )
+    if len(picture.residuals) > 1:
+        return f"{first} {look}"
     return f"{first} {look} Bottom: the residual over a short stretch; beside the signal it is too small to see."

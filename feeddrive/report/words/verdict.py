@@ -16,6 +16,15 @@ from feeddrive.units.quantity import percent
 _NOISE_REACHED = 1.5
 """An error up to this multiple of the sensor noise counts as noise: the noise itself is only estimated."""
 
+_NOISE_KNOWN = 1.25
+"""Multiple of the sensor noise above which it is told: a level that is read from a recording is known to a fifth."""
+
+_TELLS = {
+    "motor_torque": "friction, masses and ripples of the torque",
+    "table_position": "free play, stiffness and errors of the lead",
+}
+"""Channel of a motion to what it alone tells."""
+
 
 def verdict_sentences(diagnosis: Diagnosis) -> list[str]:
     """The verdict in plain text, the main finding first."""
@@ -29,7 +38,7 @@ def verdict_sentences(diagnosis: Diagnosis) -> list[str]:
     another = f"It carries what the catalogue's form misses of {'; '.join(curves)}." if curves else ""
     stated = [one.statement for one in diagnosis.changes.changes]
     changed = f"Between the recordings changed: {'; '.join(stated)}." if stated else ""
-    found = [_main_finding(diagnosis), diagnosis.untried, another, beside, changed]
+    found = [_main_finding(diagnosis), *_not_judged(diagnosis), diagnosis.untried, another, beside, changed]
     sentences = [*found, _errors(diagnosis), *_above_noise(diagnosis)]
     return [sentence for sentence in sentences + _beyond(diagnosis) + _doubts(diagnosis) if sentence]
 
@@ -71,10 +80,18 @@ def _main_finding(diagnosis: Diagnosis) -> str:
     if diagnosis.untried:
         return "Nothing was found that the declared plant lacks, as far as was tried."
     if all(is_noise(diagnosis, channel) for channel in diagnosis.channels):
-        plainly = all(noise_multiple(channel) <= _NOISE_REACHED for channel in diagnosis.channels)
-        down_to = "sensor noise" if plainly else "the noise and the steps of its sensors"
+        most = max((noise_multiple(channel) for channel in diagnosis.channels), default=1.0)
+        down_to = f"{significant(most, 2)} times the sensor noise" if most > _NOISE_KNOWN else "sensor noise"
+        down_to = down_to if most <= _NOISE_REACHED else "the noise and the steps of its sensors"
         return f"Nothing is missing: the declared plant{within} explains the recording down to {down_to}."
     return "No known effect was found that the declared plant lacks, but it does not explain the recording fully."
+
+
+def _not_judged(diagnosis: Diagnosis) -> list[str]:
+    """What a motion does not tell because one of its two channels was not recorded."""
+    judged = {channel.name for channel in diagnosis.channels}
+    lacking = [name for name in _TELLS if name not in judged] if judged & set(_TELLS) else []
+    return [f"No {plain(name)} was compared, which is what shows {_TELLS[name]}." for name in lacking]
 
 
 def _tables(diagnosis: Diagnosis) -> str:
