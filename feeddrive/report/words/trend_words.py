@@ -104,9 +104,12 @@ def quantity_rows(trend: Trend) -> list[list[str]]:
     for quantity in shown_quantities(trend):
         here = quantity.values[np.isfinite(quantity.values)]
         course, limit = trend.courses.get(quantity.name), trend.limits.get(quantity.name)
-        first, last = (here[0], here[-1]) if course is None else (course.fitted[0], course.fitted[-1])
-        scatter = "" if course is None else f"± {size_words(1.96 * course.scatter, quantity.unit)}"
-        did = "" if course is None else "; ".join(_dated(trend, quantity, one) for one in course.found) or "steady"
+        if course is None or len(here) < FEWEST:  # no course is told from so few: what was measured
+            first, last, scatter, did = here[0], here[-1], "", "too few to tell" if course else ""
+        else:
+            first, last = course.fitted[0], course.fitted[-1]
+            scatter = f"± {size_words(1.96 * course.scatter, quantity.unit)}"
+            did = "; ".join(_dated(trend, quantity, one) for one in course.found) or "steady"
         rows.append(
             [
                 quantity.words,
