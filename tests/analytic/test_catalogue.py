@@ -248,6 +248,11 @@ def test_asking_for_parts() -> None:
     names = [one.name for one in fd.list_parts("screw", diameter="32mm", lead=0.01)]
     assert "R32-10K5-FDC-26.9" in names and "R32-10K5-FSCDIN" in names and len(names) == 6
     assert all(si(one.further["rated_torque"], "N m") >= 50 for one in fd.list_parts("coupling", torque="50 N m"))
+    none = fd.list_parts("screw", diameter="33 mm")
+    assert (
+        len(none) == 0
+        and none.listing().caption == "none has a diameter of 33 mm; the nearest have 32 mm, 38 mm, 40 mm"
+    )
     with pytest.raises(InputError, match="one can ask for diameter, lead"):
         fd.list_parts("screw", bore="20 mm")
     with pytest.raises(InputError, match="write one of screw, bearing, guide, coupling, motor"):

@@ -276,6 +276,29 @@ def test_no_effect_but_error_above_noise_is_not_called_complete() -> None:
     assert "4.2 times the sensor noise" in " ".join(sentences)  # 0.05 / 0.012
 
 
+@pytest.mark.parametrize(
+    ("times", "said"), [(1.2, "down to sensor noise."), (1.42, "down to 1.4 times the sensor noise.")]
+)
+def test_an_error_beyond_what_a_noise_is_known_to_is_told_over_it(times: float, said: str) -> None:
+    """A noise that is read from a recording is known to a fifth; an error of 1.4 times it is not just that."""
+    clean = examples.nothing_missing()
+    noise = clean.channels[0].noise_rms
+    more = dataclasses.replace(clean.channels[0], after=ErrorFigures(times * noise, 0.2, 0.04))
+    told = verdict_sentences(dataclasses.replace(clean, channels=(more, *clean.channels[1:])))[0]
+    assert told.startswith("Nothing is missing") and told.endswith(said)
+
+
+@pytest.mark.parametrize(("kept", "said"), [("motor_torque", "table position"), ("table_position", "motor torque")])
+def test_what_a_channel_that_was_not_recorded_would_show_is_told(kept: str, said: str) -> None:
+    """A recording without one of the two channels of a motion does not test what that channel alone shows."""
+    clean = examples.nothing_missing()
+    both = verdict_sentences(clean)
+    alone = [channel for channel in clean.channels if channel.name == kept]
+    told = verdict_sentences(dataclasses.replace(clean, channels=tuple(alone)))
+    assert any(one.startswith(f"No {said} was compared") for one in told)
+    assert not any("was compared" in one for one in both)
+
+
 def test_a_channel_that_became_worse_is_named(found: Diagnosis) -> None:
     channel = found.channels[0]
     worse = dataclasses.replace(channel, after=ErrorFigures(2.0 * channel.before.rms, 1.0, 0.1))

@@ -214,6 +214,13 @@ def test_nothing_to_follow(tmp_path: Path, axis: fd.Axis) -> None:
     (tmp_path / "empty").mkdir()
     with pytest.raises(fd.InputError, match=r"no recording can be used \(the folder holds no file of one\); add"):
         fd.watch(tmp_path / "empty", axis)
+    (tmp_path / "empty" / "broken.csv").write_text("what is this", encoding="utf-8")
+    with pytest.raises(fd.InputError, match="no recording can be used"):
+        fd.watch(tmp_path / "empty", axis, out=tmp_path / "out")
+    assert not (tmp_path / "out").exists()  # neither a result nor what it knows
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    with pytest.raises(fd.InputError, match="is a file, not a folder"):
+        fd.watch(tmp_path / "empty", axis, out=tmp_path / "file")
 
 
 @pytest.mark.parametrize(

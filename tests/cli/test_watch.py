@@ -33,7 +33,7 @@ def test_page_table_and_json(folder: Path, capsys: pytest.CaptureFixture[str]) -
     assert main(["watch", str(folder), "--plant", plant]) == 0
     shown = " ".join(capsys.readouterr().out.split())
     assert "3 recordings are too few to tell a change, which takes 8." in shown and "Nothing changed" not in shown
-    assert "stiffness" in shown and "trend.html" in shown
+    assert "stiffness" in shown and "trend.html" in shown and "too few to tell" in shown and "steady" not in shown
     out = folder.parent / "days_watch"
     assert {"trend.html", "trend.json", "trend.csv", "watch.npz", "trend_1.png"} <= {
         path.name for path in out.iterdir()
@@ -46,6 +46,15 @@ def test_page_table_and_json(folder: Path, capsys: pytest.CaptureFixture[str]) -
     assert [one["file"] for one in content["recordings"]] == [f"x_2026-01-0{k}.csv" for k in (1, 2, 3)]
     play = next(one for one in content["quantities"] if one["name"] == "play")
     assert len(play["values"]) == 3 and play["unit"] == "m"
+
+
+def test_of_few_recordings_what_was_measured_is_shown(folder: Path) -> None:
+    """No course is told from three: their mean would be a value that no day has."""
+    watched = fd.watch(folder, fd.load(folder.parent / "plant.toml"))
+    stiffness = next(one for one in watched.trend.quantities if one.name == "stiffness")
+    shown = next(row for row in watched.listing().rows if row[0] == stiffness.words)
+    first, last = (f"{1e-6 * value:.4g} N/µm" for value in stiffness.values[[0, -1]])
+    assert shown[1:5] == [first, last, "", "too few to tell"]
 
 
 @pytest.mark.parametrize(("scenario", "shows"), [("friction_map", True), ("slow_reversal", False)])

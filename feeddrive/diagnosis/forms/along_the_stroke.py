@@ -15,16 +15,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from feeddrive.diagnosis.calibration.known import TOLERANCE
-from feeddrive.diagnosis.calibration.value_slopes import with_slopes
-from feeddrive.diagnosis.finding.refitting import at_rest, refitted
 from feeddrive.diagnosis.finding.scene import scene_of
-from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.forms.begun_anew import begun_anew, likeliest
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
+from feeddrive.diagnosis.likelihood.set_evidence import Standing
 from feeddrive.diagnosis.starts.transmission_starts import PARABOLA
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
-from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
 AXIAL = ("axial_stiffness", "nut_stiffness")
@@ -54,8 +51,8 @@ def with_declared_stiffness(here: Standing, count: int) -> Standing | None:
     coordinates[far[0]] = 0.0
     other = problem.at_values(coordinates)
     laws = _as_compliant(found.effects[place], softer, _visited(problem, found.effects))
-    begun = [_begun(other, found.effects, place, law) for law in laws]
-    return _likeliest(here, begun, count)
+    begun = [begun_anew(other, found.effects, place, law) for law in laws]
+    return likeliest(here, begun, count)
 
 
 def with_parabola_from_line(here: Standing, count: int) -> Standing | None:
@@ -73,37 +70,15 @@ def with_parabola_from_line(here: Standing, count: int) -> Standing | None:
     if not places or problem.budget.skips("a stiffness along the stroke, begun as a straight line"):
         return None
     (place,) = places
-    line = _begun(problem, found.effects, place, found.effects[place].with_values(**LINE))
+    line = begun_anew(problem, found.effects, place, found.effects[place].with_values(**LINE))
     if line is None:
         return None
     parabola = line.fit.effects[place].with_values(middle_compliance=PARABOLA)
-    return _likeliest(here, [line, _begun(line.problem, line.fit.effects, place, parabola)], count)
+    return likeliest(here, [line, begun_anew(line.problem, line.fit.effects, place, parabola)], count)
 
 
 def _is_parabola(law: Effect) -> bool:
     return number(law.values["middle_compliance"]) != 0
-
-
-def _begun(problem: Problem, effects: Sequence[Effect], place: int, law: Effect) -> Standing | None:
-    """The set with a law in the place of another, its values at rest; None where it cannot be simulated on the way."""
-    others = (*effects[:place], law, *effects[place + 1 :])
-    try:
-        there = problem if problem.calibration is None else with_slopes(problem, others)
-        return Standing(*at_rest(*refitted(there, fit(there, others))))
-    except InputError:
-        return None
-
-
-def _likeliest(here: Standing, begun: Sequence[Standing | None], count: int) -> Standing | None:
-    """The likeliest of some sets; None where that at hand is."""
-    best: tuple[float, Standing | None] = (0.0, None)
-    for other in begun:
-        try:
-            if other is not None and (odds := odds_between(here, other, count)) > best[0]:
-                best = odds, other
-        except InputError:  # cannot be simulated on the motions that the encoder's steps may hide
-            continue
-    return best[1]
 
 
 def _visited(problem: Problem, effects: Sequence[Effect]) -> FloatArray:

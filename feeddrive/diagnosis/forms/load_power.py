@@ -14,15 +14,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.value_slopes import with_slopes
-from feeddrive.diagnosis.finding.refitting import at_rest, refitted
 from feeddrive.diagnosis.finding.scene import scene_of
-from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.forms.begun_anew import begun_anew, likeliest
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
+from feeddrive.diagnosis.likelihood.set_evidence import Standing
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.friction.load_dependent_friction import LoadDependentFriction
-from feeddrive.errors import InputError
 
 BEGUN = (1 / 3, -1 / 3)
 """Powers beyond the first that fits begin with: rolling contacts, and a friction that the load saturates."""
@@ -42,19 +39,9 @@ def with_power_of_load(here: Standing, count: int) -> Standing | None:
     (place,), force = places, _force_met(problem, found.effects)
     if not force > 0:
         return None
-    best: tuple[float, Standing | None] = (0.0, None)
-    for bend in BEGUN:
-        law = found.effects[place].with_values(bend=bend, at_force=force)
-        others = (*found.effects[:place], law, *found.effects[place + 1 :])
-        try:
-            there = problem if problem.calibration is None else with_slopes(problem, others)
-            begun = Standing(*at_rest(*refitted(there, fit(there, others))))
-            odds = odds_between(here, begun, count)
-        except InputError:  # cannot be simulated on the way, or on the motions that the encoder's steps may hide
-            continue
-        if odds > best[0]:
-            best = odds, begun
-    return best[1]
+    law = found.effects[place]
+    bent = (law.with_values(bend=bend, at_force=force) for bend in BEGUN)
+    return likeliest(here, (begun_anew(problem, found.effects, place, one) for one in bent), count)
 
 
 def _is_bent(law: Effect) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from feeddrive.compensation.actions import Actions
+from feeddrive.compensation.actions import FORM, Actions
 from feeddrive.compensation.cures import COMPENSATE, REPAIR, SET, cure
 from feeddrive.compensation.sheet import left, predicted_rows
 from feeddrive.diagnosis.judging.result import Diagnosis, EffectResult
@@ -61,7 +61,9 @@ def _predicted(found: Actions) -> str:
     ends = [1e3 * one for one in found.predicted.wishes.stroke or found.predicted.table.positions[[0, -1]].tolist()]
     note = (
         f"Simulated from {ends[0]:.4g} mm to {ends[1]:.4g} mm with the position loop closed at the motor, in slow "
-        "motion; one approach per direction, so that nothing scatters. Repair renews preload; compensation is a table."
+        "motion; one approach per direction, so that nothing scatters. Repair renews preload; compensation is a table "
+        f"of --form {FORM} with {len(found.predicted.table.positions)} points. The form of a control may round and "
+        "space it otherwise: feeddrive compensate says what that one brings."
     )
     rest = [line.replace(" um", " \N{MICRO SIGN}m").replace("^2", "²") for line in left(found.predicted)]
     return table(heads, rows) + bullets(rest) + paragraph(note, "note")
