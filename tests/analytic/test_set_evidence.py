@@ -23,17 +23,14 @@ from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
 from feeddrive.diagnosis.likelihood.set_evidence import (
     DISCREPANCY,
     LEVEL_KNOWN,
-    Standing,
     declared_cost,
-    declining,
     discrepancy,
-    gain_between,
     log_odds,
     log_prior_of_size,
     log_volume,
-    odds_between,
     variance_along,
 )
+from feeddrive.diagnosis.likelihood.standing import Standing, declining, gain_between, odds_between
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND
 from feeddrive.diagnosis.numbers.number_rows import MeasuredRows
 from feeddrive.effects.base import Effect
@@ -324,7 +321,7 @@ def test_set_that_declines_wins_where_the_other_does_worse_there_than_elsewhere(
         slopes = one if effects[0].name == "payload" else other
         return Fit(tuple(effects), slopes.residual[half], slopes.jacobian[half], slopes.coordinates)
 
-    monkeypatch.setattr("feeddrive.diagnosis.likelihood.set_evidence.fit", as_it_is)
+    monkeypatch.setattr("feeddrive.diagnosis.likelihood.standing.fit", as_it_is)
     odds = odds_between(first, second, COUNT)
     assert (odds > 0) is wins
     assert odds_between(second, first, COUNT) == pytest.approx(-odds, rel=1e-6)

@@ -13,7 +13,7 @@ METHOD = ROOT / "docs" / "method.md"
 
 DECIDING = ("finding/", "judging/effect", "judging/judge", "judging/veto",
             "judging/physical_reading", "calibration/", "certainty/ambiguity", "certainty/inclusion",
-            "certainty/uncertainty", "likelihood/set_evidence", "likelihood/cross_validation",
+            "certainty/uncertainty", "likelihood/set_evidence", "likelihood/standing", "likelihood/cross_validation",
             "likelihood/predictor")  # fmt: skip
 """Rooms and files that decide which names are found; the others prepare recordings, read starts, or word the rest."""
 

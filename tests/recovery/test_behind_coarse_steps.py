@@ -11,7 +11,8 @@ from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.likelihood.encoder_along import encoder_along
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, variance_along
+from feeddrive.diagnosis.likelihood.set_evidence import variance_along
+from feeddrive.diagnosis.likelihood.standing import Standing, odds_between
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.source.constant_force import ConstantForce

@@ -11,7 +11,8 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated, levelled_alike
 from feeddrive.diagnosis.likelihood.encoder_along import encoder_along
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, log_odds, odds_between, variance_along
+from feeddrive.diagnosis.likelihood.set_evidence import log_odds, variance_along
+from feeddrive.diagnosis.likelihood.standing import Standing, odds_between
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.effects.source.constant_force import ConstantForce

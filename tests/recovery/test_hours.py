@@ -14,7 +14,7 @@ from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.finding.attempt import refuse_of_no_hours
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import same_samples
+from feeddrive.diagnosis.likelihood.standing import same_samples
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.starts import starts
 from feeddrive.effects.catalogue import find_effect

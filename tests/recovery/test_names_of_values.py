@@ -22,7 +22,7 @@ from feeddrive.diagnosis.judging.asked_of_fit import values_within_tolerance
 from feeddrive.diagnosis.likelihood.coordinates import at_an_end
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
+from feeddrive.diagnosis.likelihood.standing import Standing, odds_between
 from feeddrive.effects.base import Port
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation

@@ -16,7 +16,7 @@ from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.forms.spring_law import from_declared
 from feeddrive.diagnosis.judging.judge import prepared_for_judging
 from feeddrive.diagnosis.likelihood.fit import fit
-from feeddrive.diagnosis.likelihood.set_evidence import regained, same_samples
+from feeddrive.diagnosis.likelihood.standing import regained, same_samples
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.base import Port
 from feeddrive.effects.friction.stribeck import Stribeck

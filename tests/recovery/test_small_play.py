@@ -13,7 +13,7 @@ from feeddrive.diagnosis.forms.spring_law import with_likelier_law
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import regained
+from feeddrive.diagnosis.likelihood.standing import regained
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.transmission.backlash import Backlash

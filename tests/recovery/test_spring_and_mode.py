@@ -18,7 +18,7 @@ from feeddrive.diagnosis.forms.simpler_law import as_payload
 from feeddrive.diagnosis.forms.spring_law import odds_between
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing
+from feeddrive.diagnosis.likelihood.standing import Standing
 from feeddrive.diagnosis.motion.prediction import AxisPredictor
 from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.diagnosis.starts import mode, transmission_starts

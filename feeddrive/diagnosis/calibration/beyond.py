@@ -27,7 +27,7 @@ from feeddrive.diagnosis.calibration.together import cost, fitted_together
 from feeddrive.diagnosis.calibration.value_slopes import ENOUGH, with_new_slopes, with_slopes
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
+from feeddrive.diagnosis.likelihood.standing import Standing, odds_between
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND, SURE
 from feeddrive.diagnosis.motion.preparing import weighed_by
 from feeddrive.effects.base import Effect

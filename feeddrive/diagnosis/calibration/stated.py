@@ -19,7 +19,7 @@ from feeddrive.diagnosis.calibration.declared import (
 )
 from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import regained
+from feeddrive.diagnosis.likelihood.standing import regained
 from feeddrive.effects.base import Effect, Value, number
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray

@@ -31,13 +31,7 @@ from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import (
-    Standing,
-    commonly_predicted,
-    excess_beyond,
-    regained,
-    same_samples,
-)
+from feeddrive.diagnosis.likelihood.standing import Standing, commonly_predicted, excess_beyond, regained, same_samples
 from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.stiffness_deviation import PARTS, StiffnessDeviation

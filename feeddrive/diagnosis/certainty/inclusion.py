@@ -29,7 +29,7 @@ from feeddrive.diagnosis.finding.sets import SURE, members_weighed
 from feeddrive.diagnosis.forms.open_map import log_odds_of_curves, open_curves, with_curves_of
 from feeddrive.diagnosis.judging.result import PossibleEffect
 from feeddrive.diagnosis.likelihood.fit import fit
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
+from feeddrive.diagnosis.likelihood.standing import Standing, odds_between
 from feeddrive.diagnosis.recordings.recordings import is_shift, without_shifts
 
 OPEN = 0.5 * AGAINST

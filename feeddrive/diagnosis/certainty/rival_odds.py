@@ -73,7 +73,7 @@ def odds_and_distance(
         mine: of what was taken.
         its: of the rival, on the same samples.
         beyond: squared error of the rival less that of what was taken on fitted samples that one of them alone
-            predicts (`set_evidence.excess_beyond`).
+            predicts (`standing.excess_beyond`).
     """
     parts = (
         (list(problem.evidence), [e.fit_rows for e in problem.evidence], mine.fitted, its.fitted),

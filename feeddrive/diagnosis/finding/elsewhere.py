@@ -14,7 +14,7 @@ from feeddrive.diagnosis.finding.sets import members_weighed
 from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, same_samples
+from feeddrive.diagnosis.likelihood.standing import Standing, odds_between, same_samples
 from feeddrive.diagnosis.recordings.recordings import is_shift
 from feeddrive.effects.base import Effect, FrictionEffect, number
 from feeddrive.effects.chain.stiffness_deviation import PARTS, StiffnessDeviation, parts_of

@@ -11,7 +11,7 @@ from feeddrive.diagnosis.finding.too_small import is_seen
 from feeddrive.diagnosis.forms.open_map import with_curves_of
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing
+from feeddrive.diagnosis.likelihood.standing import Standing
 from feeddrive.effects.base import Effect
 
 

@@ -21,7 +21,7 @@ from feeddrive.diagnosis.forms.open_map import likeliest_curve, log_odds_of_curv
 from feeddrive.diagnosis.forms.spring_law import LAWS, play_from_declared, with_likelier_law
 from feeddrive.diagnosis.likelihood.fit import Fit, error_of, fit
 from feeddrive.diagnosis.likelihood.problem import LEVEL, UNEXPLAINED, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between, regained, same_samples
+from feeddrive.diagnosis.likelihood.standing import Standing, gain_between, odds_between, regained, same_samples
 from feeddrive.effects.base import Effect
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.errors import InputError

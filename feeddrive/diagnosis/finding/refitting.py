@@ -25,7 +25,7 @@ from feeddrive.diagnosis.likelihood.coordinates import absent_coordinates, read_
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit, linear_step
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between
+from feeddrive.diagnosis.likelihood.standing import Standing, gain_between
 from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.diagnosis.motion.preparing import beside_machine
 from feeddrive.diagnosis.motion.row_steps import in_told_steps

@@ -13,7 +13,7 @@ from feeddrive.diagnosis.finding.too_small import with_what_matters
 from feeddrive.diagnosis.likelihood.cross_validation import LEAST_GAIN
 from feeddrive.diagnosis.likelihood.fit import Fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import same_samples
+from feeddrive.diagnosis.likelihood.standing import same_samples
 from feeddrive.effects.base import Effect
 
 FAIR_PART = 0.3

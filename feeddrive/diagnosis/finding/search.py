@@ -64,7 +64,7 @@ from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between
+from feeddrive.diagnosis.likelihood.standing import Standing, gain_between, odds_between
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.effects.transmission.backlash import Backlash

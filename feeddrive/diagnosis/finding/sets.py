@@ -13,12 +13,8 @@ from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.finding.columns import Columns, Neighbour
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import (
-    Standing,
-    log_prior_of_size,
-    odds_between,
-    regained,
-)
+from feeddrive.diagnosis.likelihood.set_evidence import log_prior_of_size
+from feeddrive.diagnosis.likelihood.standing import Standing, odds_between, regained
 from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.effects.base import Effect
 

@@ -19,13 +19,8 @@ from feeddrive.diagnosis.finding.refitting import at_rest
 from feeddrive.diagnosis.finding.round import FAIR_PART, Round
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import (
-    Standing,
-    gain_between,
-    log_prior_of_size,
-    odds_between,
-    same_samples,
-)
+from feeddrive.diagnosis.likelihood.set_evidence import log_prior_of_size
+from feeddrive.diagnosis.likelihood.standing import Standing, gain_between, odds_between, same_samples
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 

@@ -13,7 +13,8 @@ from feeddrive.diagnosis.finding.members import member, members_of
 from feeddrive.diagnosis.likelihood.coordinates import coordinate_ends, write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit
 from feeddrive.diagnosis.likelihood.problem import LEVEL, UNEXPLAINED, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import LEVEL_KNOWN, Standing
+from feeddrive.diagnosis.likelihood.set_evidence import LEVEL_KNOWN
+from feeddrive.diagnosis.likelihood.standing import Standing
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.effects.base import Effect
 

@@ -14,7 +14,7 @@ from feeddrive.diagnosis.finding.likelier import FITTED, Taken
 from feeddrive.diagnosis.finding.round import FAIR_PART, Round
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between, same_samples
+from feeddrive.diagnosis.likelihood.standing import Standing, gain_between, odds_between, same_samples
 from feeddrive.errors import InputError
 
 

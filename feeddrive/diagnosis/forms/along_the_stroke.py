@@ -18,7 +18,7 @@ from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.forms.begun_anew import begun_anew, likeliest
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing
+from feeddrive.diagnosis.likelihood.standing import Standing
 from feeddrive.diagnosis.starts.transmission_starts import PARABOLA
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition

@@ -8,7 +8,7 @@ from feeddrive.diagnosis.calibration.value_slopes import with_slopes
 from feeddrive.diagnosis.finding.refitting import at_rest, refitted
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
+from feeddrive.diagnosis.likelihood.standing import Standing, odds_between
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
+from feeddrive.diagnosis.likelihood.standing import Standing, odds_between
 from feeddrive.diagnosis.starts.starts import BREAK_AWAY
 from feeddrive.effects.friction.presliding import Presliding
 

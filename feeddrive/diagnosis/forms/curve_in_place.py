@@ -32,13 +32,8 @@ from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.law_curve import has_curve, products
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import (
-    Standing,
-    log_odds,
-    log_prior_of_size,
-    odds_between,
-    same_samples,
-)
+from feeddrive.diagnosis.likelihood.set_evidence import log_odds, log_prior_of_size
+from feeddrive.diagnosis.likelihood.standing import Standing, odds_between, same_samples
 from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.effects.base import Effect, Port, listed, number
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation

@@ -17,7 +17,7 @@ import numpy as np
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.forms.begun_anew import begun_anew, likeliest
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing
+from feeddrive.diagnosis.likelihood.standing import Standing
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.friction.load_dependent_friction import LoadDependentFriction
 

@@ -20,7 +20,8 @@ from feeddrive.diagnosis.forms.spring_law import TOLD
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, variance_along
+from feeddrive.diagnosis.likelihood.set_evidence import variance_along
+from feeddrive.diagnosis.likelihood.standing import Standing, odds_between
 from feeddrive.diagnosis.starts.sines import SKIRT
 from feeddrive.effects.base import Effect, Port, number
 from feeddrive.effects.chain.payload import Payload

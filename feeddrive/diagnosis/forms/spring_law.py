@@ -4,7 +4,7 @@ The two say nearly the same of most recordings, and neither is straight in the d
 while the law was missing have gone to stand in for it, some of them several deviations away, and a play of the right
 width is then worse than a softness fitted there. A play is chaotic besides, and predicts fewer samples. So each law
 begins at the declared values, with the samples that it predicts and slopes of its own, and the likelier is taken
-(`set_evidence.odds_between`).
+(`standing.odds_between`).
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.coordinates import LEAST, at_its_limit, read_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, error_of, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, regained, same_samples, variance_along
+from feeddrive.diagnosis.likelihood.set_evidence import variance_along
+from feeddrive.diagnosis.likelihood.standing import Standing, odds_between, regained, same_samples
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss

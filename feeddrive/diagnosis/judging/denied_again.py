@@ -14,7 +14,7 @@ from feeddrive.diagnosis.finding.members import members_of
 from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.judging.veto import without_denied
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
+from feeddrive.diagnosis.likelihood.standing import Standing, odds_between
 from feeddrive.diagnosis.recordings.recordings import is_shift
 
 Found = tuple[Search, list[Judged]]

@@ -18,7 +18,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import declining, regained
+from feeddrive.diagnosis.likelihood.standing import declining, regained
 from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError

@@ -55,7 +55,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.evidence import UNSEEN
 from feeddrive.diagnosis.likelihood.fit import fit, linear_step
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, missed_by, regained
+from feeddrive.diagnosis.likelihood.standing import Standing, missed_by, regained
 from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.recordings.compared import JudgedChanges, judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, without_shifts

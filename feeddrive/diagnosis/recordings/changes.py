@@ -20,7 +20,7 @@ from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, error_of, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between
+from feeddrive.diagnosis.likelihood.standing import Standing, gain_between
 from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.diagnosis.recordings.change_candidates import (
     Movable,

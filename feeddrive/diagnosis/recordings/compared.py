@@ -26,7 +26,7 @@ from feeddrive.diagnosis.judging.judge import (
 )
 from feeddrive.diagnosis.judging.result import EffectResult
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import declining
+from feeddrive.diagnosis.likelihood.standing import declining
 from feeddrive.diagnosis.recordings.change_report import (
     Question,
     gone_back,

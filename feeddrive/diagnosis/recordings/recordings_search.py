@@ -25,7 +25,7 @@ from feeddrive.diagnosis.finding.sets import needed_members
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, same_samples
+from feeddrive.diagnosis.likelihood.standing import Standing, odds_between, same_samples
 from feeddrive.diagnosis.recordings.change_candidates import levels
 from feeddrive.diagnosis.recordings.change_words import FACTORS
 from feeddrive.diagnosis.recordings.changes import Changes, find_changes

@@ -22,7 +22,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import LEAST_GAIN, compare_
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.likelihood.problem import LEVEL, Problem
-from feeddrive.diagnosis.likelihood.set_evidence import regained
+from feeddrive.diagnosis.likelihood.standing import regained
 from feeddrive.diagnosis.unexplained.analysis import Analysis
 from feeddrive.diagnosis.unexplained.carry import analyses_of, forms_of, joint_step, judged_with, tried, with_carried
 from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Instead, Unexplained, rest_in_words
