@@ -24,8 +24,9 @@ Of a recording with a scale, the lead error as measured:
 | m(p) | mean deviation of both directions at the position that the control indicates | m |
 | h, d | difference of the directions, direction of motion (1 or -1) | m, 1 |
 
-Only samples in steady motion count (with the motor angle), or the ends of stand-stills (with the set-point alone). h
-holds play and wind-up alike: a recording by itself does not tell them apart, so h goes into no table.
+Only samples in steady motion that have crossed what the directions differ by count (with the motor angle), or the ends
+of stand-stills (with the set-point alone). h holds play and wind-up alike: a recording by itself does not tell them
+apart, so h goes into no table.
 """
 
 from __future__ import annotations
@@ -116,6 +117,10 @@ _STEADY = 0.1
 _STANDING = 1e-5
 """m/s: slower is standing."""
 
+TURNED = 3.0
+"""Travel after a reversal, over what the directions differ by, from which a sample counts: play is crossed after one
+such difference, and what friction winds up after as much again; noise takes the rest."""
+
 _BINS_PER_REVOLUTION = 16
 
 _ENOUGH = 0.1
@@ -158,7 +163,11 @@ def recorded_deviations(recording: Recording, radius: float | None, period: floa
         chosen, direction = _steady(recording, indicated)
         if not chosen.any():
             raise InputError("nothing moves steadily", recording.name, "record slow strokes at constant velocity")
-        return _solved(recording, indicated[chosen], error[chosen], direction[chosen], period, True)
+        found = _solved(recording, indicated[chosen], error[chosen], direction[chosen], period, True)
+        crossed = chosen & (_since_reversal(indicated, direction) > TURNED * abs(found.difference or 0.0))
+        if not crossed.any() or np.array_equal(crossed, chosen):
+            return found
+        return _solved(recording, indicated[crossed], error[crossed], direction[crossed], period, True)
     if "setpoint" not in recording:
         has = "motor_angle and no lead is given" if "motor_angle" in recording else "neither motor_angle nor setpoint"
         raise InputError(f"it has {has}", recording.name, 'write --lead "20 mm" with motor_angle, or record setpoint')
@@ -179,6 +188,14 @@ def _steady(recording: Recording, indicated: FloatArray) -> tuple[BoolArray, Flo
     chosen: BoolArray = (np.abs(velocity) > _STANDING) & (change < _STEADY * np.abs(velocity))
     chosen[: 2 * half], chosen[-2 * half :] = False, False
     return chosen, np.sign(velocity)
+
+
+def _since_reversal(indicated: FloatArray, direction: FloatArray) -> FloatArray:
+    """Travel since the direction last turned [m], (n,); that since the beginning before it does."""
+    turned = np.concatenate([[True], direction[1:] != direction[:-1]])
+    last = np.maximum.accumulate(np.where(turned, np.arange(len(indicated)), 0))
+    travel: FloatArray = np.abs(indicated - indicated[last])
+    return travel
 
 
 def _stops(recording: Recording) -> tuple[FloatArray, FloatArray, FloatArray]:

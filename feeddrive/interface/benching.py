@@ -8,7 +8,7 @@ from pathlib import Path
 from feeddrive.bench_page.page import BenchPage, bench_page
 from feeddrive.errors import InputError
 from feeddrive.files import DIAGNOSED, write_text_atomically
-from feeddrive.interface.axis import Axis, load
+from feeddrive.interface.axis import Axis, axis_of, load
 from feeddrive.interface.measured.diagnosed import Diagnosed
 from feeddrive.interface.measured.reading import diagnosis_content
 from feeddrive.interface.quantities import Quantity, positive
@@ -44,7 +44,7 @@ class Bench:
 
 
 def bench(
-    axis: Axis,
+    axis: Axis | str | Path,
     *,
     controller: Servo | str | Path | None = None,
     diagnosis: Diagnosed | str | Path | None = None,
@@ -66,7 +66,7 @@ def bench(
     >>> page.text.startswith("<!DOCTYPE html>")
     True
     """
-    axis, found = _diagnosed(axis, diagnosis)
+    axis, found = _diagnosed(axis_of(axis), diagnosis)
     plant = axis.plant
     heaviest = positive(payload, "kg", "payload", "100 kg")
     cascade = cascade_for(plant, controller) if controller is not None else tune(axis).cascade

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from feeddrive import __version__
 from feeddrive.errors import InputError
 from feeddrive.files import find_scenario_or_controller, write_text_atomically
+from feeddrive.interface.axis import Axis, axis_of
 from feeddrive.interface.quantities import Quantities, Quantity, positive, quantities, si
 from feeddrive.interface.retuning import Retuned, compare, read_present
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
@@ -31,7 +32,6 @@ from feeddrive.tuning.recommendation import Recommendation, recommend
 from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
-    from feeddrive.interface.axis import Axis
     from feeddrive.report.figures.drawing import ReportFigure
 
 
@@ -147,7 +147,7 @@ class Servo(Shown):
 
 
 def tune(
-    axis: Axis,
+    axis: Axis | str | Path,
     *,
     phase: Quantity = "45 deg",
     gain: Quantity = "8 dB",
@@ -176,7 +176,7 @@ def tune(
     Raises:
         InputError: margins that cannot be met, or a value that cannot be used.
     """
-    plant = axis.plant
+    plant = axis_of(axis).plant
     place = _feedback(feedback)
     if drive is not None:
         read = cascade_for(plant, drive)

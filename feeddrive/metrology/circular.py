@@ -26,6 +26,9 @@ from feeddrive.typing import FloatArray
 GLITCH_SPAN = math.radians(30.0)
 """Angle after a reversal in which its glitch is looked for."""
 
+ANOTHER = 2.0
+"""Factor between a measured and a nominal radius from which they are of two circles."""
+
 
 @dataclass(frozen=True)
 class Circular:
@@ -62,6 +65,7 @@ def circular(angle: FloatArray, position: FloatArray, radius: float) -> Circular
     sine, cosine = np.sin(angle), np.cos(angle)
     basis = np.column_stack([np.ones_like(angle), sine, cosine])
     (centre, a, b), *_ = np.linalg.lstsq(basis, position, rcond=None)
+    _refuse_another_circle(float(math.hypot(a, b)), radius)
     rest = position - centre - a * sine - b * cosine
     # second axis: the same gain and lag, a quarter of a turn ahead
     second = a * cosine - b * sine
@@ -77,6 +81,13 @@ def circular(angle: FloatArray, position: FloatArray, radius: float) -> Circular
         float(-math.atan2(b, a)),
         (reversals[0], reversals[1]),
     )
+
+
+def _refuse_another_circle(measured: float, nominal: float) -> None:
+    """Refuse a nominal radius that is not that of the circle: a loop may shrink it at speed, by less than a half."""
+    if not 1 / ANOTHER < measured / nominal < ANOTHER:
+        what = f"the circle has a radius of {1e3 * measured:.4g} mm, and {1e3 * nominal:.4g} mm is given"
+        raise InputError(what, "radius", "write the nominal radius of this circle, with its unit")
 
 
 def _glitch(angle: FloatArray, rest: FloatArray, lead: float, side: float) -> float:
@@ -139,6 +150,8 @@ def circular_path(x: FloatArray, y: FloatArray, nominal: float) -> CircularPath:
     """
     x, y = whole_turns(x, y)
     centre, radius = least_squares_circle(x, y)
+    if nominal:
+        _refuse_another_circle(radius, nominal)
     angle = np.unwrap(np.arctan2(y - centre[1], x - centre[0]))
     turned = float(angle[-1] - angle[0])
     gap = abs(turned) / max(1, len(angle) - 1)

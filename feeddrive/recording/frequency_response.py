@@ -43,7 +43,8 @@ class FrequencyResponse:
         sha256: checksum of the file as it was read; empty if there is none.
 
     Raises:
-        InputError: arrays of different lengths, frequencies that do not ascend, values that are not finite.
+        InputError: arrays of different lengths, frequencies that do not ascend, values that are not finite or zero, a
+            coherence outside of 0 to 1.
     """
 
     name: str
@@ -67,6 +68,11 @@ class FrequencyResponse:
             raise InputError("a frequency or value is not finite", where, "measure or export it again")
         if self.frequency[0] < 0.0 or not np.all(np.diff(self.frequency) > 0.0):
             raise InputError("the frequencies do not ascend from zero or above", where, "sort the rows by frequency")
+        if not np.all((self.values != 0) | (self.frequency == 0)):
+            raise InputError("a magnitude is zero", where, "leave the line out, or measure or export it again")
+        known = self.coherence[np.isfinite(self.coherence)]
+        if np.any((known < 0) | (known > 1 + 1e-6)):
+            raise InputError("a coherence is outside of 0 to 1", where, "correct it, or leave the column out")
 
     @property
     def positive(self) -> FrequencyResponse:
@@ -108,6 +114,10 @@ def read_response(content: FileContent) -> FrequencyResponse:
             "write above the header: # from = motor_torque, to = motor_speed",
         )
     frequency, (unit, magnitude), phase = columns["frequency"][1], columns["magnitude"], columns["phase"][1]
+    if np.any(magnitude < 0):
+        line = int(np.argmax(magnitude < 0))
+        what = f"a magnitude is below zero, {magnitude[line]:.6g} at {frequency[line]:.6g} Hz"
+        raise InputError(what, where, "write factors, not decibels, and the sign as a phase of 180 deg")
     coherence = columns["coherence"][1] if "coherence" in columns else np.full_like(frequency, np.nan)
     values = (magnitude * np.exp(1j * np.radians(phase))).astype(np.complex128)
     return FrequencyResponse(

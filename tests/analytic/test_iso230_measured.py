@@ -423,3 +423,22 @@ def test_page_holds_graph_and_figures(tmp_path: Path) -> None:
     ):
         assert word in page, word
     assert (tmp_path / "out" / "iso230.json").is_file() and (tmp_path / "out" / "positioning.png").is_file()
+
+
+def test_positions_in_the_place_of_deviations_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "laser.csv"
+    rows = "".join(f"{x},{x + 0.001},{x + 0.002}\n" for x in (0, 100, 200, 300))
+    path.write_text("target [mm],up 1 [mm],up 2 [mm]\n" + rows, encoding="utf-8")
+    with pytest.raises(fd.InputError, match=r"span 300 mm over 300 mm of travel; correct .*# readings = positions"):
+        fd.iso230(path)
+    path.write_text("# readings = positions\ntarget [mm],up 1 [mm],up 2 [mm]\n" + rows, encoding="utf-8")
+    assert fd.iso230(path).part == 2
+
+
+def test_a_radius_of_another_circle_is_refused(tmp_path: Path) -> None:
+    angle = np.linspace(0.0, 2 * np.pi * 1.01, 400)
+    rows = "".join(f"{150 * np.cos(a):.6f},{150 * np.sin(a):.6f}\n" for a in angle)
+    path = tmp_path / "ballbar.csv"
+    path.write_text("# radius = 1 m\nx [mm],y [mm]\n" + rows, encoding="utf-8")
+    with pytest.raises(fd.InputError, match="has a radius of 150 mm, and 1000 mm is given"):
+        fd.iso230(path)

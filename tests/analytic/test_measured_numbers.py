@@ -225,3 +225,13 @@ def test_a_value_that_is_asserted_does_not_hide_that_another_is_beyond_too(tmp_p
     assert len(result.suspects) > 1 and "table.mass" not in {one.value.key for one in result.suspects}
     line = numbers_verdict(result)[0]
     assert line.startswith("Other than declared: table mass") and "So is one more value" in line
+
+
+@pytest.mark.parametrize("value", ["191 N/m", "191 kN/um"])
+def test_a_number_in_another_unit_is_refused(tmp_path: Path, value: str) -> None:
+    """A million times less than the plant gives is no bracket: the unit is the next prefix, or the one after."""
+    path = tmp_path / "numbers.toml"
+    text = f'format = "feeddrive-measured/1"\n[[measured]]\nquantity = "axial_stiffness"\nvalue = "{value}"\n'
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(fd.InputError, match=r"is measured where the plant gives .*; correct the unit"):
+        fd.explain("kimm_testbed", path)

@@ -125,7 +125,7 @@ def test_verdict_says_what_is_missing_and_how_well_it_is_mended(found: Diagnosis
     sentences = [plain(sentence) for sentence in verdict_sentences(found)]
     assert sentences[0].startswith("The declared plant lacks: backlash 7.52 µm [7.40, 7.68]; torque ripple")
     assert "friction level other than declared (table): coulomb factor 1.21 [1.17, 1.25]" in sentences[0]
-    assert sentences[1].startswith("Error on data not fitted: motor torque 0.1")
+    assert sentences[1].startswith("Error on data not fitted up to 150 Hz: motor torque 0.1")
     assert "table position 3." in sentences[1] and "(sensor noise 0.0500 µm)" in sentences[1]
     assert "Not confirmed on data not fitted: friction level other than declared." in sentences
     assert any("cannot tell apart: moving mass other than declared and inertia" in one for one in sentences)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -226,3 +227,19 @@ def test_mistakes_are_told_in_one_line(change: dict[str, object], words: str) ->
     with pytest.raises(fd.InputError) as caught:
         result_of(FrequencyResponse(**fields))  # type: ignore[arg-type]
     assert words in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [("10,-2,-90,0.9", "a magnitude is below zero, -2 at 10 Hz"), ("10,0,-90,0.9", "a magnitude is zero"),
+     ("10,0.1,-90,1.7", "outside of 0 to 1")],
+)  # fmt: skip
+def test_a_line_that_no_machine_gives_is_refused(tmp_path: Path, line: str, said: str) -> None:
+    """One of them made a resonance of 7 kg, at odds of more than 999 to 1."""
+    head = (
+        "# from = motor_torque, to = motor_speed\nfrequency [Hz],magnitude [(rad/s)/(N m)],phase [deg],coherence [1]\n"
+    )
+    path = tmp_path / "frf.csv"
+    path.write_text(head + f"1,1,-90,0.9\n5,0.2,-90,0.9\n{line}\n20,0.05,-90,0.9\n", encoding="utf-8")
+    with pytest.raises(fd.InputError, match=re.escape(said)):
+        fd.explain("bench_axis", path)

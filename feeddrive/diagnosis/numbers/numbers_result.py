@@ -26,6 +26,7 @@ from feeddrive.diagnosis.numbers.explanations import (
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
 from feeddrive.diagnosis.numbers.next_number import NextNumber, mixed, next_numbers
 from feeddrive.diagnosis.plant_text import most_likely_values, with_written_values
+from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
@@ -103,6 +104,29 @@ class NumbersResult:
     further: tuple[NextNumber, ...]
 
 
+ANOTHER_UNIT = 500.0
+"""Factor between a measured number and what the plant gives from which one of the two is in another unit: half of the
+next prefix. No part that stands in for another differs by as much."""
+
+OF_PARTS = ("axial_stiffness", "natural_frequency", "inertia_at_motor")
+"""Numbers that the size of parts gives. Friction may be undeclared, and play any number of times what springs give."""
+
+
+def refuse_another_unit(number: MeasuredNumber, plant: Plant) -> None:
+    """Refuse a number of the parts that is hundreds of times what the plant gives, or as small a share of it.
+
+    Raises:
+        InputError: it is, or the plant cannot give it.
+    """
+    if number.quantity not in OF_PARTS:
+        return
+    given = abs(number.kind.of(plant, number.setting))
+    if given > 0 and not 1 / ANOTHER_UNIT < abs(number.value) / given < ANOTHER_UNIT:
+        unit = number.kind.unit
+        what = f"{format_quantity(number.value, unit)} is measured where the plant gives {format_quantity(given, unit)}"
+        raise InputError(what, number.quantity, "correct the unit of the one that is wrong")
+
+
 def diagnose_numbers(
     entries: Mapping[str, Any],
     path: Path,
@@ -120,8 +144,11 @@ def diagnose_numbers(
         progress: called with a line that says what is going on.
 
     Raises:
-        InputError: a number that this plant cannot give, or a file that declares nothing that could be other.
+        InputError: a number that this plant cannot give, or in another unit, or a file that declares nothing that could
+            be other.
     """
+    for number in measured:
+        refuse_another_unit(number, plant)
     problem = numbers_problem(entries, path, plant, measured)
     sets = explanations(problem, progress)
     progress("each value alone, and what to measure next")

@@ -19,7 +19,7 @@ from feeddrive.diagnosis.preparation import informative
 from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_lines
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError, quoted
-from feeddrive.interface.axis import Axis, axis_of_text, load
+from feeddrive.interface.axis import Axis, axis_of, axis_of_text
 from feeddrive.interface.measured.first_look import play_seen
 from feeddrive.interface.measured.reading import as_recording
 from feeddrive.interface.shown import Listing, Shown
@@ -272,7 +272,7 @@ def diagnose(
     Raises:
         InputError: a recording that cannot be used, or an axis that does not declare what it holds.
     """
-    axis = axis if isinstance(axis, Axis) else load(axis)
+    axis = axis_of(axis)
     allowed = budget_of(budget, "budget")
     fitted, judged = _several(recording, "recording"), _several(validate, "validate")
     if not fitted:

@@ -18,7 +18,7 @@ from feeddrive.diagnosis.responses.response_result import (
 from feeddrive.errors import InputError
 from feeddrive.export.point import export_point
 from feeddrive.files import write_bytes_atomically, write_text_atomically
-from feeddrive.interface.axis import Axis, axis_of_text
+from feeddrive.interface.axis import Axis, axis_of, axis_of_text
 from feeddrive.interface.measured.reading import read_response_file
 from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.interface.shown import Listing, Shown, write_json
@@ -124,7 +124,7 @@ def _found(axis: Axis, result: ResponseResult) -> Listing:
 
 
 def explain(
-    axis: Axis,
+    axis: Axis | str | Path,
     measured: str | Path | FrequencyResponse,
     *,
     at: str = "",
@@ -134,7 +134,7 @@ def explain(
     """Trace the difference of measured numbers, or of a measured frequency response, from an axis.
 
     Args:
-        axis: as declared, without effects or values that were put in.
+        axis: as declared, without effects or values that were put in; its plant file, or the name of a shipped machine.
         measured: TOML file with `[[measured]]` tables, or a frequency response or its file.
         at: operating point of a frequency response, "x=200 mm, v=3 m/min"; the middle of the stroke in slow motion.
         controller: of `tune`, or a controller or scenario file, under which a response of the speed loop was measured.
@@ -148,6 +148,7 @@ def explain(
     >>> len(found.result.beyond)
     0
     """
+    axis = axis_of(axis)
     entries = with_named_parts(axis.entries, str(axis.path))
     if axis.values or axis.added:
         raise InputError("the axis was changed after it was loaded", axis.name, "save it, and load the file")

@@ -73,6 +73,9 @@ def inspect(
     if isinstance(found, FrequencyResponse):
         return Inspected(Path(path), found.sha256, response=found)
     if found is None:
+        if wishes.channels:
+            what = "has canonical headings, which say what is which" if known is None else "is read by a mapping"
+            raise InputError(what, where, "leave out --channel, and correct the headings or the mapping")
         recording = read_recording(Path(path), None if map is None else Path(map), decimal=decimal)
         return Inspected(Path(path), recording.sha256, recording)
     understood = mapped(found, known, where) if known is not None else understand(found, wishes, where)

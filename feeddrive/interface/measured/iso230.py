@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from feeddrive.errors import InputError
-from feeddrive.interface.axis import Axis
+from feeddrive.interface.axis import Axis, axis_of
 from feeddrive.interface.measured.reading import read
 from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.shown import Listing, Shown, finite
@@ -144,7 +144,7 @@ class Iso230(Shown):
 def iso230(
     measured: Given | Sequence[Given],
     *,
-    plant: Axis | None = None,
+    plant: Axis | str | Path | None = None,
     part: int | None = None,
     radius: Quantity | None = None,
     stop: Quantity | None = None,
@@ -169,6 +169,7 @@ def iso230(
     given = cast(list[Given], list(measured) if several else [measured])  # type: ignore[arg-type]
     if not given or len(given) > 2:
         raise InputError(f"{len(given)} measurements", "iso230", "give one, or the two axes of a circle")
+    plant = None if plant is None else axis_of(plant)
     if part not in (None, 2, 3, 4):
         raise InputError(f"no part {part}", "part", "write 2 (positioning), 3 (drift) or 4 (circle)")
     wishes = _Wishes(

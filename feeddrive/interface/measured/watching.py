@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.interface.axis import Axis
+from feeddrive.interface.axis import Axis, axis_of
 from feeddrive.interface.quantities import Quantity, positive
 from feeddrive.interface.shown import Listing, Shown, finite
 from feeddrive.output_folder import output_folder, refuse_unusable
@@ -134,7 +134,7 @@ class Watched(Shown):
 
 def watch(
     folder: str | Path,
-    plant: Axis,
+    plant: Axis | str | Path,
     *,
     out: str | Path | None = None,
     map: str | Path | None = None,
@@ -167,7 +167,7 @@ def watch(
     Raises:
         InputError: no folder, no recording that can be used, or an option that is none.
     """
-    report = progress or (lambda _: None)
+    plant, report = axis_of(plant), progress or (lambda _: None)
     place = Path(folder)
     if plant.values or plant.added:
         raise InputError("the axis was changed after it was loaded", plant.name, "save it, and load the file")

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.export.point import export_point
+from feeddrive.interface.axis import Axis, axis_of
 from feeddrive.interface.quantities import Quantity, quantities, si
 from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
@@ -30,7 +32,6 @@ from feeddrive.tuning.position_loop import position_gain
 if TYPE_CHECKING:
     import control
 
-    from feeddrive.interface.axis import Axis
     from feeddrive.typing import FloatArray
 
 UNDER_THE_LIMIT = 0.995
@@ -83,7 +84,7 @@ class Controller:
 
 
 def cascade(
-    axis: Axis,
+    axis: Axis | str | Path,
     servo: Servo | str | None = None,
     *,
     velocity_gain: Quantity | None = None,
@@ -118,7 +119,7 @@ def cascade(
     >>> loop.margins().stable
     True
     """
-    plant = axis.plant
+    plant = axis_of(axis).plant
     if servo is None:
         rates = (si(velocity_rate, "Hz", "velocity_rate"), si(position_rate, "Hz", "position_rate"))
         place = None if feedback is None else Feedback(feedback)
@@ -143,7 +144,9 @@ def cascade(
     return _around(plant, made)
 
 
-def schedule(axis: Axis, servo: Servo, positions: Sequence[Quantity]) -> tuple[Controller, dict[float, float]]:
+def schedule(
+    axis: Axis | str | Path, servo: Servo, positions: Sequence[Quantity]
+) -> tuple[Controller, dict[float, float]]:
     """A cascade whose K_v follows the table: at each position the largest that keeps the margins there.
 
     The velocity loop is that of the servo at all positions; feed-forward is left out.
@@ -159,7 +162,7 @@ def schedule(axis: Axis, servo: Servo, positions: Sequence[Quantity]) -> tuple[C
     Raises:
         InputError: positions that do not ascend, or a loop that does not read the table.
     """
-    plant, demand = axis.plant, servo.recommendation.demand
+    plant, demand = axis_of(axis).plant, servo.recommendation.demand
     alike = replace(servo.cascade, feed_forward=FeedForward())
     places = quantities(positions, "m", "positions")
     gains = {place: UNDER_THE_LIMIT * position_gain(plant, alike, [Case(place)], demand).gain for place in places}
@@ -174,7 +177,7 @@ def schedule(axis: Axis, servo: Servo, positions: Sequence[Quantity]) -> tuple[C
 
 
 def sampled(
-    axis: Axis,
+    axis: Axis | str | Path,
     rate: Quantity = "4 kHz",
     *,
     current_bandwidth: Quantity = "1 kHz",
@@ -202,7 +205,8 @@ def sampled(
     """
     import control
 
-    plant, point = axis.plant, export_point(axis.plant, at, "at")
+    plant = axis_of(axis).plant
+    point = export_point(plant, at, "at")
     drive = _drive(plant, rate, current_bandwidth, dead_time)
     found = sampled_plant(plant, drive, point.linearised_at, point.position)
     return control.ss(found.a, found.b, found.c, found.d, drive.sample_time, inputs=list(INPUTS), outputs=list(OUTPUTS))
@@ -222,7 +226,7 @@ def with_load(machine: control.StateSpace) -> control.StateSpace:
 
 
 def state_feedback(
-    axis: Axis,
+    axis: Axis | str | Path,
     gain: FloatArray,
     observer: FloatArray,
     rate: Quantity = "4 kHz",
@@ -243,7 +247,8 @@ def state_feedback(
     Raises:
         InputError: gains of another size.
     """
-    plant, point = axis.plant, export_point(axis.plant, at, "at")
+    plant = axis_of(axis).plant
+    point = export_point(plant, at, "at")
     drive = _drive(plant, rate, current_bandwidth, dead_time)
     machine = sampled_plant(plant, drive, point.linearised_at, point.position)
     standing = [

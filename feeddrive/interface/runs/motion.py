@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.interface.axis import Axis, axis_of
 from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.runs.controllers import Controller
 from feeddrive.interface.shown import Listing, Shown, needed_pandas
@@ -23,7 +25,6 @@ from feeddrive.units.quantity import format_quantity
 if TYPE_CHECKING:
     import pandas
 
-    from feeddrive.interface.axis import Axis
     from feeddrive.report.figures.drawing import ReportFigure
 
 Course = Quantity | Callable[[FloatArray], FloatArray] | FloatArray
@@ -122,7 +123,7 @@ class Motion(Shown):
 
 
 def move(
-    axis: Axis,
+    axis: Axis | str | Path,
     controller: Controller | None = None,
     *,
     duration: Quantity,
@@ -158,6 +159,7 @@ def move(
     >>> round(run.step("table_velocity", at="0.1 s").final, 2)
     0.06
     """
+    axis = axis_of(axis)
     if (controller is None) == (torque is None):
         raise InputError("a controller or a torque is needed, not both", "move", "give fd.cascade(...), or torque=...")
     place, speed = si(start, "m", "start"), si(moving, "m/s", "moving")

@@ -27,6 +27,9 @@ from feeddrive.units.quantity import parse
 
 _RUN = re.compile(r"(up|down) ?(\d+)")
 _PLACE = re.compile(r"(?:deviation |error )?at (.+)")
+STEEPEST = 0.1
+"""Deviations over the travel that an axis has at most: as a table of compensation, a hundred times a poor screw's."""
+
 SAME_TARGET = 1e-7
 """Targets that are nearer than this are one [m]: a tenth of what the finest control writes."""
 
@@ -88,6 +91,10 @@ def linear_test_of(found: dict[tuple[float, int], list[float]], where: str) -> L
         what = f"targets are not approached alike: {1e3 * odd:g} mm less often than others"
         raise InputError(what, where, "approach every target as often, twice at least, from one side or from both")
     columns = {side: np.array([found[target, side] for target in targets]) for side in sides}
+    means = np.array([float(np.mean([columns[side][i] for side in sides])) for i in range(len(targets))])
+    if (span := float(np.ptp(means))) > STEEPEST * float(np.ptp(targets)):
+        what = f"the deviations span {1e3 * span:.4g} mm over {1e3 * float(np.ptp(targets)):.4g} mm of travel"
+        raise InputError(what, where, 'correct their unit; if they are positions, write "# readings = positions" above')
     return LinearTest(np.array(targets), columns.get(1), columns.get(-1))
 
 

@@ -110,7 +110,9 @@ def _errors(diagnosis: Diagnosis) -> str:
     if not diagnosis.channels:
         return ""
     listed = ", ".join(_error(channel, diagnosis.nothing_missing) for channel in diagnosis.channels)
-    return f"Error on data not fitted: {listed}."
+    edges = {channel.band_hz[1] for channel in diagnosis.channels}
+    band = f" up to {significant(max(edges), 3)} Hz" if len(edges) == 1 and max(edges) > 1 else ""
+    return f"Error on data not fitted{band}: {listed}."
 
 
 def _error(channel: ChannelResult, nothing_missing: bool) -> str:
