@@ -1,0 +1,53 @@
+"""A machine may be named wherever an axis is asked for, and a value be a number in SI wherever a quantity is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import feeddrive as fd
+
+ASKED: dict[str, Callable[[object], object]] = {
+    "cascade": lambda axis: fd.cascade(axis, velocity_gain="1 N m s/rad", reset_time="10 ms"),  # type: ignore[arg-type]
+    "sampled": lambda axis: fd.sampled(axis, "4 kHz"),  # type: ignore[arg-type]
+    "move": lambda axis: fd.move(axis, torque=0.0, duration="10 ms"),  # type: ignore[arg-type]
+    "bench": lambda axis: fd.bench(axis, controller="step_position"),  # type: ignore[arg-type]
+}
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_a_machine_is_named(name: str) -> None:
+    assert ASKED[name]("bench_axis") is not None
+
+
+@pytest.mark.parametrize("name", [*ASKED, "tune", "explain", "watch", "iso230"])
+def test_a_name_that_is_none_is_one_line(name: str, tmp_path: Path) -> None:
+    """In place of a message about an attribute that a string has not."""
+    asked = ASKED | {
+        "tune": lambda axis: fd.tune(axis),  # type: ignore[arg-type]
+        "explain": lambda axis: fd.explain(axis, tmp_path / "numbers.toml"),  # type: ignore[arg-type]
+        "watch": lambda axis: fd.watch(tmp_path, axis),  # type: ignore[arg-type]
+        "iso230": lambda axis: fd.iso230(tmp_path / "laser.csv", plant=axis),  # type: ignore[arg-type]
+    }
+    with pytest.raises(fd.InputError, match="neither a file nor the name of a shipped plant"):
+        asked[name]("no_axis")
+
+
+@pytest.mark.parametrize(
+    ("key", "number", "text"), [("table.mass", 160.0, "160 kg"), ("effect.guide_friction.coulomb", 50, "50 N")]
+)
+def test_numbers_are_in_si(key: str, number: float, text: str) -> None:
+    axis = fd.load("bench_axis")
+    one, other = (axis.with_values({key: value}).plant for value in (number, text))
+    assert one.chain_values() == other.chain_values()
+    assert [e.values for e in one.effects] == [e.values for e in other.effects]
+
+
+def test_a_wish_for_a_channel_is_not_passed_over(tmp_path: Path) -> None:
+    """Headings of the package's own say which is which: a file that is wished otherwise is refused."""
+    rows = "".join(f"{k / 1000},{k},{k}\n" for k in range(50))
+    (tmp_path / "own.csv").write_text("time [s],motor_torque [N m],motor_angle [rad]\n" + rows, encoding="utf-8")
+    with pytest.raises(fd.InputError, match="canonical headings"):
+        fd.inspect(tmp_path / "own.csv", channels={"motor_torque": "foo"})
