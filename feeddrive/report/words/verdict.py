@@ -38,7 +38,7 @@ def verdict_sentences(diagnosis: Diagnosis) -> list[str]:
     another = f"It carries what the catalogue's form misses of {'; '.join(curves)}." if curves else ""
     stated = [one.statement for one in diagnosis.changes.changes]
     changed = f"Between the recordings changed: {'; '.join(stated)}." if stated else ""
-    found = [_main_finding(diagnosis), *_not_judged(diagnosis), diagnosis.untried, another, beside, changed]
+    found = [_main_finding(diagnosis), diagnosis.untried, *_not_judged(diagnosis), another, beside, changed]
     sentences = [*found, _errors(diagnosis), *_above_noise(diagnosis)]
     return [sentence for sentence in sentences + _beyond(diagnosis) + _doubts(diagnosis) if sentence]
 
