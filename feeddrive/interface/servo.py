@@ -177,7 +177,7 @@ def tune(
         InputError: margins that cannot be met, or a value that cannot be used.
     """
     plant = axis_of(axis).plant
-    place = _feedback(feedback)
+    place = feedback_of(feedback)
     if drive is not None:
         read = cascade_for(plant, drive)
         bare = replace(read, feedback=place or read.feedback, torque_filters=(), speed_filters=())
@@ -224,7 +224,8 @@ def controller_entries(controller: Servo | str | Path) -> Mapping[str, Any]:
     return {"file": str(Path(controller).resolve())}
 
 
-def _feedback(written: str | None) -> Feedback | None:
+def feedback_of(written: str | None) -> Feedback | None:
+    """What the position loop reads, by its word. Raises InputError: another word."""
     allowed = [str(place) for place in Feedback]
     if written is not None and written not in allowed:
         raise InputError(f'"{written}" is not possible', "feedback", nearest(written, allowed))

@@ -72,7 +72,10 @@ class Recording:
         >>> fd.Recording.from_arrays(time=[0.0, 0.5, 1.0], motor_angle=[0.0, 0.1, 0.2])
         Recording 'arrays': 3 samples at 2 Hz, motor_angle
         """
-        arrays = {key: np.asarray(values, dtype=np.float64) for key, values in channels.items()}
+        try:
+            arrays = {key: np.asarray(values, dtype=np.float64) for key, values in channels.items()}
+        except (TypeError, ValueError):
+            raise InputError("a channel holds what are no real numbers", name, "give arrays of them, in SI") from None
         for key, values in arrays.items():
             if key != "time":
                 channel_unit(key, name)

@@ -145,6 +145,8 @@ def state_feedback(
     if K.shape != (1, n) or L.shape != (n + 1, len(MEASURED)):
         what = f"gains of shape {K.shape} and {L.shape} for {n} states"
         raise InputError(what, "state feedback", f"give (1, {n}) and ({n + 1}, {len(MEASURED)})")
+    if not (np.isfinite(K).all() and np.isfinite(L).all()):
+        raise InputError("a gain is no finite number", "state feedback", "check the poles or weights that it is of")
     steady = steady_columns(machine, tick)
     function = _function(machine, K, L, steady, torque_limit)
     initial = np.append(position * steady.states[:, 0], 0.0)

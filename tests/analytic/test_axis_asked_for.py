@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import feeddrive as fd
@@ -51,3 +52,24 @@ def test_a_wish_for_a_channel_is_not_passed_over(tmp_path: Path) -> None:
     (tmp_path / "own.csv").write_text("time [s],motor_torque [N m],motor_angle [rad]\n" + rows, encoding="utf-8")
     with pytest.raises(fd.InputError, match="canonical headings"):
         fd.inspect(tmp_path / "own.csv", channels={"motor_torque": "foo"})
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        (lambda: fd.cascade("bench_axis", velocity_gain="1 N m s/rad", feedback="x"), "feedback"),
+        (lambda: fd.move("bench_axis", torque=0.0, duration="1e9 s"), "write a shorter one"),
+        (lambda: fd.move("bench_axis", torque=0.0, duration="1 s", rate="-1 kHz"), "above zero"),
+        (lambda: fd.warm_up("thermal_bench", speed="750 rev/min", duration="10 min", order=0), "above zero"),
+        (
+            lambda: fd.warm_up("thermal_bench", speed="750 rev/min", duration="10 min", segments=0),
+            "above zero",
+        ),
+        (lambda: fd.state_feedback("bench_axis", np.full((1, 8), np.nan), np.zeros((9, 2))), "no finite number"),
+        (lambda: fd.Recording.from_arrays(time=["a", "b"], motor_angle=[0.0, 1.0]), "no real numbers"),
+        (lambda: fd.Recording.from_arrays(time=[0.0, 1.0], motor_angle=[0.0, 1.0j]), "no real numbers"),
+    ],
+)
+def test_what_cannot_be_is_one_line(asked: Callable[[], object], said: str) -> None:
+    with pytest.raises(fd.InputError, match=said):
+        asked()

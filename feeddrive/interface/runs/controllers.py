@@ -14,11 +14,11 @@ from feeddrive.errors import InputError
 from feeddrive.export.point import export_point
 from feeddrive.interface.axis import Axis, axis_of
 from feeddrive.interface.quantities import Quantity, quantities, si
-from feeddrive.interface.servo import Servo, cascade_for
+from feeddrive.interface.servo import Servo, cascade_for, feedback_of
 from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
 from feeddrive.plant.plant import Plant
 from feeddrive.servo import state_feedback as observed
-from feeddrive.servo.cascade import Cascade, Feedback, FeedForward
+from feeddrive.servo.cascade import Cascade, FeedForward
 from feeddrive.servo.cascade_function import cascade_controller, velocity_loop_of
 from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop
 from feeddrive.servo.margins import Margins, margins
@@ -122,7 +122,7 @@ def cascade(
     plant = axis_of(axis).plant
     if servo is None:
         rates = (si(velocity_rate, "Hz", "velocity_rate"), si(position_rate, "Hz", "position_rate"))
-        place = None if feedback is None else Feedback(feedback)
+        place = feedback_of(feedback)
         lag, late = si(current_bandwidth, "Hz", "current_bandwidth"), si(dead_time, "s", "dead_time")
         if not min(*rates, lag) > 0:
             raise InputError("a rate or bandwidth is not above zero", "cascade", "write positive values")

@@ -122,6 +122,10 @@ class Motion(Shown):
         return [run_figure(self.axis_name, self.time, self.series)]
 
 
+MOST_TICKS = 50_000_000
+"""Samples of a run at most: three hours at 4 kHz, some gigabytes."""
+
+
 def move(
     axis: Axis | str | Path,
     controller: Controller | None = None,
@@ -204,9 +208,13 @@ def _under_control(
 
 
 def _ticks(duration: Quantity, tick: float) -> FloatArray:
+    if not tick > 0:
+        raise InputError(f"a tick of {tick:g} s", "rate", 'write one above zero, such as "4 kHz"')
     count = round(si(duration, "s", "duration") / tick)
     if count < 1:
         raise InputError(f"{duration} is less than a sample", "duration", "write a longer one")
+    if count > MOST_TICKS:
+        raise InputError(f"{duration} are {count:.3g} samples", "duration", "write a shorter one, or a lower rate")
     return np.arange(count, dtype=float) * tick
 
 

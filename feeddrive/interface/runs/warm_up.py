@@ -14,7 +14,7 @@ import numpy as np
 
 from feeddrive import __version__
 from feeddrive.errors import InputError
-from feeddrive.interface.axis import Axis
+from feeddrive.interface.axis import Axis, axis_of
 from feeddrive.interface.quantities import Quantities, Quantity, quantities, si
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
 from feeddrive.recording.files.writing import write_recording
@@ -166,7 +166,7 @@ class WarmUp(Shown):
 
 
 def warm_up(
-    axis: Axis,
+    axis: Axis | str | Path,
     duty: str | Path | None = None,
     *,
     speed: Quantity | None = None,
@@ -196,7 +196,7 @@ def warm_up(
     >>> "nut_temperature" in warm.channels
     True
     """
-    plant = axis.heat
+    plant = axis_of(axis).heat
     if stroke is not None:
         travel = _travel(stroke, plant.rig.travel)
         plant.rig.refuse_travel(travel)
@@ -212,6 +212,9 @@ def warm_up(
     band = si(within, "m", "within")
     if not (math.isfinite(band) and band > 0):
         raise InputError(f'"{within}" is no error', "within", 'write a length above zero, such as "1 µm"')
+    if order < 1 or segments < 1:
+        what = f"{order} states of the reduced model and {segments} segments of the shaft"
+        raise InputError(what, "order, segments", "write whole numbers above zero")
     return WarmUp(study(plant, rows, band, order), segments)
 
 
