@@ -71,6 +71,8 @@ def settling(
     """
     if not window > 0:
         raise InputError(f"a window of {window:g} m", "settling", "write a window above zero")
+    if len(time) != len(position) or not np.all(np.isfinite(position)):
+        raise InputError("times and positions are not as many finite numbers", "settling", "give (n,) and (n,)")
     upto = int(np.searchsorted(time, leave, side="left"))
     standing = position[int(np.searchsorted(time, arrival, side="left")) : upto]
     if not len(standing):

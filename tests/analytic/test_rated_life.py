@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from feeddrive.errors import ValidityWarning
+from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.files import plants_folder
 from feeddrive.parts.life.life import life_together
 from feeddrive.parts.screw.double_nut import rigid_sharing
@@ -64,3 +64,14 @@ def test_lives_together() -> None:
     assert life_together([2.0, 2.0]) == pytest.approx(2.0 * 2 ** (-1 / SLOPE), rel=1e-12)
     assert life_together([2.0, math.inf]) == 2.0
     assert life_together([math.inf]) == math.inf
+
+
+@pytest.mark.parametrize(("lives", "whole"), [([0.0, 1e6], 0.0), ([math.inf, math.inf], math.inf), ([5.0], 5.0)])
+def test_a_set_of_bodies_lasts_no_longer_than_one_of_them(lives: list[float], whole: float) -> None:
+    assert life_together(lives) == pytest.approx(whole)
+
+
+@pytest.mark.parametrize("lives", [[], [-1.0, 1.0], [math.nan]])
+def test_lives_that_are_none(lives: list[float]) -> None:
+    with pytest.raises(InputError, match="none of them negative"):
+        life_together(lives)

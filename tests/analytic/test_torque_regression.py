@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from feeddrive.errors import InputError
 from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
 from feeddrive.parts.screw.torque_regression import split_torque
 
@@ -24,3 +25,9 @@ def test_exact_data_give_friction_and_load_free_torque() -> None:
 def test_a_load_free_torque_inflates_the_friction_of_single_points() -> None:
     apparent = [GEOMETRY.friction_from(F, T) for F, T in zip(PRELOADS, COULOMB + 0.05, strict=True)]
     assert np.all(np.diff(apparent) < 0) and apparent[-1] > 0.034
+
+
+@pytest.mark.parametrize(("preload", "torque"), [([500.0], [0.1]), ([500.0, 500.0], [0.1, 0.2]), ([1.0, 2.0], [0.1])])
+def test_one_preload_is_no_line(preload: list[float], torque: list[float]) -> None:
+    with pytest.raises(InputError, match="two preloads or more"):
+        split_torque(np.array(preload), np.array(torque))

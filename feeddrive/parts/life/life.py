@@ -84,10 +84,16 @@ def survival(revolutions: float, rated: float) -> float:
 
 
 def life_together(lives: Sequence[float]) -> float:
-    """Life that 90 % of sets of bodies survive: L^-e is the sum of L_i^-e, in any unit; infinite where all are."""
-    shortest = min(lives)
-    if math.isinf(shortest):
-        return math.inf
+    """Life that 90 % of sets of bodies survive: L^-e is the sum of L_i^-e, in any unit; infinite where all are.
+
+    Raises:
+        InputError: no life, or one that is negative or no number.
+    """
+    shortest = min(lives, default=math.nan)
+    if not all(life >= 0 for life in lives) or math.isnan(shortest):
+        raise InputError(f"{list(lives)} are no lives", "life of a set", "give one or more, none of them negative")
+    if math.isinf(shortest) or shortest == 0:
+        return shortest
     return float(shortest * sum((life / shortest) ** -BALL_SCREW.slope for life in lives) ** (-1.0 / BALL_SCREW.slope))
 
 

@@ -17,10 +17,17 @@ from __future__ import annotations
 
 import numpy as np
 
+from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
 
 def split_torque(preload: FloatArray, torque: FloatArray) -> tuple[float, float]:
-    """k [N m/N] and T_v [N m] of torques T, (n,) [N m], at two preloads F_0 or more, (n,) [N]."""
+    """k [N m/N] and T_v [N m] of torques T, (n,) [N m], at two preloads F_0 or more, (n,) [N].
+
+    Raises:
+        InputError: preloads that are all one, or another number of torques.
+    """
+    if np.shape(preload) != np.shape(torque) or np.ptp(np.asarray(preload, dtype=float)) == 0:
+        raise InputError("a line needs torques at two preloads or more", "drag torque", "measure at another preload")
     slope, rest = np.polyfit(preload, torque, 1)
     return float(slope), float(rest)
