@@ -168,8 +168,7 @@ class Axis:
         """The axis with other values.
 
         Args:
-            values: key as of `--set`, "table.mass" or "effect.guide_friction.coulomb", to a quantity with its unit, or
-                a number in SI.
+            values: key as of `--set`, "table.mass" or "effect.guide_friction.coulomb", to a quantity with its unit.
 
         Raises:
             InputError: a key or a value that the file could not hold either.
@@ -179,7 +178,7 @@ class Axis:
         >>> axis.plant.chain_values()["table_mass"]
         160.0
         """
-        written = {key: _as_written(value, _unit_of(key, value)) for key, value in values.items()}
+        written = {key: _as_written(value) for key, value in values.items()}
         changed = replace(self, values=tuple({**dict(self.values), **written}.items()))
         changed.refuse_unusable()
         return changed
@@ -490,25 +489,10 @@ def _short(length: float) -> str:
     return format_quantity(length, "m")
 
 
-def _unit_of(key: str, value: object) -> str:
-    """SI unit of a key of a plant file for a number given without one; none where the key has none, or is unknown."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return ""
-    from feeddrive.interface.keys import keys
-
-    try:
-        (found,) = keys(f"plant.{key}").keys
-    except (InputError, ValueError):
-        return ""
-    return found.unit if found.unit != "1" else ""
-
-
-def _as_written(value: object, unit: str = "") -> str:
+def _as_written(value: object) -> str:
     """A value as it is written behind `--set key=`."""
     if isinstance(value, str):
         return value
-    if unit:
-        return f"{value!r} {unit}"
     if isinstance(value, list | tuple):
         return f"[{', '.join(repr(one) if not isinstance(one, str) else chr(34) + one + chr(34) for one in value)}]"
     return repr(value).lower() if isinstance(value, bool) else repr(value)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from feeddrive import __version__
 from feeddrive.errors import InputError
 from feeddrive.files import find_scenario_or_controller, write_text_atomically
-from feeddrive.interface.axis import Axis, axis_of
+from feeddrive.interface.plants import plant_of
 from feeddrive.interface.quantities import Quantities, Quantity, positive, quantities, si
 from feeddrive.interface.retuning import Retuned, compare, read_present
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
@@ -32,6 +32,7 @@ from feeddrive.tuning.recommendation import Recommendation, recommend
 from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
+    from feeddrive.interface.axis import Axis
     from feeddrive.report.figures.drawing import ReportFigure
 
 
@@ -176,7 +177,7 @@ def tune(
     Raises:
         InputError: margins that cannot be met, or a value that cannot be used.
     """
-    plant = axis_of(axis).plant
+    plant = plant_of(axis)
     place = feedback_of(feedback)
     if drive is not None:
         read = cascade_for(plant, drive)

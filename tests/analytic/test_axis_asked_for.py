@@ -1,4 +1,4 @@
-"""A machine may be named wherever an axis is asked for, and a value be a number in SI wherever a quantity is."""
+"""A machine may be named wherever an axis is asked for; what cannot be is one line."""
 
 from __future__ import annotations
 
@@ -34,16 +34,6 @@ def test_a_name_that_is_none_is_one_line(name: str, tmp_path: Path) -> None:
     }
     with pytest.raises(fd.InputError, match="neither a file nor the name of a shipped plant"):
         asked[name]("no_axis")
-
-
-@pytest.mark.parametrize(
-    ("key", "number", "text"), [("table.mass", 160.0, "160 kg"), ("effect.guide_friction.coulomb", 50, "50 N")]
-)
-def test_numbers_are_in_si(key: str, number: float, text: str) -> None:
-    axis = fd.load("bench_axis")
-    one, other = (axis.with_values({key: value}).plant for value in (number, text))
-    assert one.chain_values() == other.chain_values()
-    assert [e.values for e in one.effects] == [e.values for e in other.effects]
 
 
 def test_a_wish_for_a_channel_is_not_passed_over(tmp_path: Path) -> None:

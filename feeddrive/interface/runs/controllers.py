@@ -12,7 +12,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.export.point import export_point
-from feeddrive.interface.axis import Axis, axis_of
+from feeddrive.interface.plants import plant_of
 from feeddrive.interface.quantities import Quantity, quantities, si
 from feeddrive.interface.servo import Servo, cascade_for, feedback_of
 from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
@@ -32,6 +32,7 @@ from feeddrive.tuning.position_loop import position_gain
 if TYPE_CHECKING:
     import control
 
+    from feeddrive.interface.axis import Axis
     from feeddrive.typing import FloatArray
 
 UNDER_THE_LIMIT = 0.995
@@ -119,7 +120,7 @@ def cascade(
     >>> loop.margins().stable
     True
     """
-    plant = axis_of(axis).plant
+    plant = plant_of(axis)
     if servo is None:
         rates = (si(velocity_rate, "Hz", "velocity_rate"), si(position_rate, "Hz", "position_rate"))
         place = feedback_of(feedback)
@@ -162,7 +163,7 @@ def schedule(
     Raises:
         InputError: positions that do not ascend, or a loop that does not read the table.
     """
-    plant, demand = axis_of(axis).plant, servo.recommendation.demand
+    plant, demand = plant_of(axis), servo.recommendation.demand
     alike = replace(servo.cascade, feed_forward=FeedForward())
     places = quantities(positions, "m", "positions")
     gains = {place: UNDER_THE_LIMIT * position_gain(plant, alike, [Case(place)], demand).gain for place in places}
@@ -205,7 +206,7 @@ def sampled(
     """
     import control
 
-    plant = axis_of(axis).plant
+    plant = plant_of(axis)
     point = export_point(plant, at, "at")
     drive = _drive(plant, rate, current_bandwidth, dead_time)
     found = sampled_plant(plant, drive, point.linearised_at, point.position)
@@ -247,7 +248,7 @@ def state_feedback(
     Raises:
         InputError: gains of another size.
     """
-    plant = axis_of(axis).plant
+    plant = plant_of(axis)
     point = export_point(plant, at, "at")
     drive = _drive(plant, rate, current_bandwidth, dead_time)
     machine = sampled_plant(plant, drive, point.linearised_at, point.position)

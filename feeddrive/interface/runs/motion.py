@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.interface.axis import Axis, axis_of
+from feeddrive.interface.plants import plant_of
 from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.runs.controllers import Controller
 from feeddrive.interface.shown import Listing, Shown, needed_pandas
 from feeddrive.metrology.response import Response, StepResponse, recorded_response, step_response
 from feeddrive.plant.analysis.steady import steady_motion
+from feeddrive.plant.plant import Plant
 from feeddrive.recording.recording import Recording
 from feeddrive.simulate.controlled.controlled import resting_state, simulate_controlled
 from feeddrive.simulate.held_torque import simulate_torque
@@ -25,6 +26,7 @@ from feeddrive.units.quantity import format_quantity
 if TYPE_CHECKING:
     import pandas
 
+    from feeddrive.interface.axis import Axis
     from feeddrive.report.figures.drawing import ReportFigure
 
 Course = Quantity | Callable[[FloatArray], FloatArray] | FloatArray
@@ -163,32 +165,32 @@ def move(
     >>> round(run.step("table_velocity", at="0.1 s").final, 2)
     0.06
     """
-    axis = axis_of(axis)
+    plant = plant_of(axis)
     if (controller is None) == (torque is None):
         raise InputError("a controller or a torque is needed, not both", "move", "give fd.cascade(...), or torque=...")
     place, speed = si(start, "m", "start"), si(moving, "m/s", "moving")
     if torque is not None:
-        return _under_torque(axis, torque, duration, 1 / si(rate, "Hz", "rate"), place, speed)
+        return _under_torque(plant, torque, duration, 1 / si(rate, "Hz", "rate"), place, speed)
     assert controller is not None
-    return _under_control(axis, controller, references, force, duration, place, speed)
+    return _under_control(plant, controller, references, force, duration, place, speed)
 
 
-def _under_torque(axis: Axis, torque: Course, duration: Quantity, tick: float, place: float, speed: float) -> Motion:
+def _under_torque(plant: Plant, torque: Course, duration: Quantity, tick: float, place: float, speed: float) -> Motion:
     """From a steady motion on, driven by a torque beyond what holds it."""
     time = _ticks(duration, tick)
-    given = steady_motion(axis.plant, speed, place).torque + _course(torque, time, "N m", "torque")
-    run = simulate_torque(axis.plant, time, given, place, speed)
+    given = steady_motion(plant, speed, place).torque + _course(torque, time, "N m", "torque")
+    run = simulate_torque(plant, time, given, place, speed)
     named = {
         "motor_torque": run.torque,
         "motor_angle": run.motor_angle,
         "table_position": run.position,
         "table_velocity": run.velocity,
     }
-    return Motion(axis.name, time, named, tick)
+    return Motion(plant.name, time, named, tick)
 
 
 def _under_control(
-    axis: Axis, controller: Controller, references: dict[str, Course], force: Course, duration: Quantity,
+    plant: Plant, controller: Controller, references: dict[str, Course], force: Course, duration: Quantity,
     place: float, speed: float,
 ) -> Motion:  # fmt: skip
     """From a motion at constant speed on, under a controller that is fed the references."""
@@ -199,12 +201,12 @@ def _under_control(
     time, given = _ticks(duration, tick), {"position": place, **references}
     columns = [_course(given.get(name, 0.0), time, UNITS.get(name, "1"), name) for name in fed]
     sampled, loop = controller.starting_at(place), controller.torque_loop
-    begin = resting_state(axis.plant, sampled, loop, place, speed)
+    begin = resting_state(plant, sampled, loop, place, speed)
     load = _course(force, time, "N", "force")
-    run = simulate_controlled(axis.plant, sampled, np.column_stack(columns), load, loop, begin)
+    run = simulate_controlled(plant, sampled, np.column_stack(columns), load, loop, begin)
     names = ("command", "torque", "motor_angle", "motor_speed", "table_position", "table_velocity")
     shown = {"motor_torque" if name == "torque" else name: getattr(run, name) for name in names}
-    return Motion(axis.name, run.time, {**shown, **run.signals}, tick)
+    return Motion(plant.name, run.time, {**shown, **run.signals}, tick)
 
 
 def _ticks(duration: Quantity, tick: float) -> FloatArray:
