@@ -31,6 +31,10 @@ FOLD = 4
 POINTS, POINTS_FOR_LENGTHS = 1000, 200
 """Points of the Gaussian process, and those on which its length scales are chosen."""
 
+LEAST = 1e-2
+"""Rms of a term where it is fitted, over that where it is judged, below which it is left out: a place that one
+recording alone visits."""
+
 STRONGEST = 3
 """Terms that count as named: as many as an ambiguous set may hold."""
 
@@ -74,7 +78,9 @@ def sparse(pair: Prepared, axis: AxisParameters | None) -> Sparse:
     after: Errors = {}
     named: dict[str, list[str]] = {}
     kept: dict[str, int] = {}
-    scale = {name: float(np.sqrt(np.mean(series**2))) or 1.0 for name, series in terms.items()}
+    # what hardly varies where it is fitted has no coefficient that means anything elsewhere
+    terms = {name: one for name, one in terms.items() if _rms(one, False) > LEAST * _rms(there[name], False)}
+    scale = {name: _rms(one, False) for name, one in terms.items()}
     targets = columns(pair, judged)
     for name, column in columns(pair, fitted).items():
         features = np.column_stack([terms[key][column.rows] / scale[key] for key in terms])
