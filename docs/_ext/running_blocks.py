@@ -50,7 +50,7 @@ class BlockDirective(SphinxDirective):
         kept = self.env.temp_data
         if "blocks_shown" not in kept:
             page = Path(self.env.doc2path(self.env.docname))
-            folder = Path(self.env.app.srcdir) / KEPT
+            folder = Path(self.env.srcdir) / KEPT
             kept["blocks_shown"] = iter(
                 enumerate(kept_page(page.read_text(encoding="utf-8"), self.env.docname, folder), 1)
             )
@@ -64,7 +64,7 @@ class BlockDirective(SphinxDirective):
 
     def _figure(self, png: bytes, number: str) -> nodes.Node:
         name = f"{self.env.docname.replace('/', '-')}-{number}.png"
-        folder = Path(self.env.app.srcdir) / DRAWN
+        folder = Path(self.env.srcdir) / DRAWN
         folder.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(png)
         caption = self.options.get("caption", "")

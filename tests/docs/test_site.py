@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import re
+import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -207,10 +208,13 @@ def test_site_builds_without_a_warning(tmp_path: Path) -> None:
     """The whole site; what it shows is computed, so the first time takes minutes."""
     if importlib.util.find_spec("furo") is None or importlib.util.find_spec("myst_parser") is None:
         pytest.skip("the site needs the extra docs: pip install -e '.[docs]'")
-    from sphinx.cmd.build import build_main
-
-    assert (
-        build_main(["-W", "--keep-going", "-n", "-q", str(DOCS), str(tmp_path / "html"), "-d", str(tmp_path / "d")])
-        == 0
+    # by itself: what the builder's own extensions are told of later versions is no warning of the site
+    command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-n", "-q"]
+    built = subprocess.run(
+        [*command, str(DOCS), str(tmp_path / "html"), "-d", str(tmp_path / "d")],
+        capture_output=True,
+        text=True,
+        check=False,
     )
+    assert built.returncode == 0, built.stderr
     assert (tmp_path / "html" / "generated" / "effects" / "backlash.html").is_file()
