@@ -50,6 +50,7 @@ def test_a_wish_for_a_channel_is_not_passed_over(tmp_path: Path) -> None:
         (lambda: fd.cascade("bench_axis", velocity_gain="1 N m s/rad", feedback="x"), "feedback"),
         (lambda: fd.move("bench_axis", torque=0.0, duration="1e9 s"), "write a shorter one"),
         (lambda: fd.move("bench_axis", torque=0.0, duration="1 s", rate="-1 kHz"), "above zero"),
+        (lambda: fd.move("bench_axis", torque=0.0, duration="1 s", rate="0 Hz"), "above zero"),
         (lambda: fd.warm_up("thermal_bench", speed="750 rev/min", duration="10 min", order=0), "above zero"),
         (
             lambda: fd.warm_up("thermal_bench", speed="750 rev/min", duration="10 min", segments=0),

@@ -11,7 +11,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.interface.plants import plant_of
-from feeddrive.interface.quantities import Quantity, si
+from feeddrive.interface.quantities import Quantity, positive, si
 from feeddrive.interface.runs.controllers import Controller
 from feeddrive.interface.shown import Listing, Shown, needed_pandas
 from feeddrive.metrology.response import Response, StepResponse, recorded_response, step_response
@@ -170,7 +170,7 @@ def move(
         raise InputError("a controller or a torque is needed, not both", "move", "give fd.cascade(...), or torque=...")
     place, speed = si(start, "m", "start"), si(moving, "m/s", "moving")
     if torque is not None:
-        return _under_torque(plant, torque, duration, 1 / si(rate, "Hz", "rate"), place, speed)
+        return _under_torque(plant, torque, duration, 1 / positive(rate, "Hz", "rate", "4 kHz"), place, speed)
     assert controller is not None
     return _under_control(plant, controller, references, force, duration, place, speed)
 
@@ -210,8 +210,6 @@ def _under_control(
 
 
 def _ticks(duration: Quantity, tick: float) -> FloatArray:
-    if not tick > 0:
-        raise InputError(f"a tick of {tick:g} s", "rate", 'write one above zero, such as "4 kHz"')
     count = round(si(duration, "s", "duration") / tick)
     if count < 1:
         raise InputError(f"{duration} is less than a sample", "duration", "write a longer one")
