@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from feeddrive.diagnosis.begun import Begun
-from feeddrive.diagnosis.calibration.calibrate import levelled_alike, weighed_alike
+from feeddrive.diagnosis.calibration.calibrate import levelled_alike, showing_encoder, weighed_alike
 from feeddrive.diagnosis.certainty.ambiguity import Rival, rivals_of
 from feeddrive.diagnosis.certainty.inclusion import asserted
 from feeddrive.diagnosis.certainty.preferred import judged_apart, judged_as_good, with_the_preferred
@@ -65,8 +65,9 @@ def settle(begun: Begun, simulate: bool, progress: Progress, start: Sequence[Eff
     found = searched.search
     machine = found.problem.machine(found.fit.effects)
     noise = begun.problem.evidence, found.problem.evidence
+    shown = showing_encoder(found.problem, found.fit.effects)
     evidence = [
-        in_told_steps(levelled_alike(one, *noise, machine), machine, found.problem.predictor) for one in evidence
+        in_told_steps(levelled_alike(one, *noise, shown), machine, found.problem.predictor) for one in evidence
     ]
     progress("judging on data not fitted")
     judged, rehomed = _judged(found, evidence)

@@ -55,10 +55,23 @@ def _levelled_beside_encoder(start: Problem) -> Problem:
         quieter = [a.noise != b.noise for a, b in zip(levelled.evidence, start.evidence, strict=True)]
         if turn and not any(quieter):
             break
-        plant, before = levelled.machine(()), levelled.evidence
+        plant, before = showing_encoder(levelled, ()), levelled.evidence
         weighed = tuple(weighed_by(e, plant, quiet) for e, quiet in zip(before, quieter, strict=True))
         start = recalibrated(replace(levelled, evidence=weighed), ())
     return start
+
+
+def showing_encoder(problem: Problem, effects: Sequence[Effect]) -> Plant:
+    """The machine that shows what the encoder's error makes: that of a set, its dampings no greater than declared.
+
+    At a resonance the error draws a damping up, and a machine with that damping shows the error less, so that it counts
+    more: weights and damping would follow each other, to ten times what is declared on a machine that has no other.
+    """
+    known = problem.calibration
+    if known is None:
+        return problem.machine(effects)
+    most = [0.0 if value.is_damping else np.inf for value in known.values]
+    return problem.at_values(np.minimum(known.coordinates, most)).machine(effects)
 
 
 def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:

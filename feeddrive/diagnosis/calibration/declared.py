@@ -85,6 +85,11 @@ class CalibratedValue:
         return 0.0 if self.key.endswith(_WIDTH) else 1.0
 
     @property
+    def is_damping(self) -> bool:
+        """Whether the value is a damping of the chain."""
+        return self.key.endswith("_damping")
+
+    @property
     def farthest(self) -> float:
         """Coordinate of the largest factor; its negative is that of the smallest."""
         return FARTHEST / self.deviation

@@ -14,6 +14,7 @@ from feeddrive.diagnosis.calibration.calibrate import (
     at_declared,
     of_hours,
     recalibrated_by_rest,
+    showing_encoder,
 )
 from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.calibration.stated import is_within_tolerance, said_by_effects, without_effects
@@ -23,13 +24,14 @@ from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
 from feeddrive.diagnosis.finding.members import rest_of
 from feeddrive.diagnosis.likelihood.coordinates import absent_coordinates, read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
+from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, fit, linear_step
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.standing import Standing, gain_between
 from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.diagnosis.motion.preparing import beside_machine
 from feeddrive.diagnosis.motion.row_steps import in_told_steps
-from feeddrive.effects.base import ChainEffect, Effect, FrictionEffect, number
+from feeddrive.effects.base import ChainEffect, Effect, FrictionEffect, TransmissionEffect, number
 from feeddrive.effects.chain.stiffness_deviation import WHOLE, StiffnessDeviation
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 
@@ -60,17 +62,24 @@ def refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
 def in_steps_told(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     """A set fitted where its machine is simulated in steps that nothing tells from the rows of the recordings.
 
-    What effects on the chain move, its resonances, show the encoder's error elsewhere than the declared machine does.
+    Beside it the encoder's error counts as that machine shows it.
     """
     machine = problem.machine(found.effects)
-    evidence = problem.evidence
-    if any(isinstance(effect, ChainEffect) for effect in found.effects) and not has_play(found.effects):
-        evidence = tuple(beside_machine(e, machine) for e in evidence)
+    evidence = tuple(beside_found(e, problem, found.effects) for e in problem.evidence)
     evidence = tuple(in_told_steps(e, machine, problem.predictor) for e in evidence)
     if all(one is other for one, other in zip(evidence, problem.evidence, strict=True)):
         return problem, found
     there = replace(problem, evidence=evidence)
     return refitted(there, fit(there, found.effects, iterations=JOINT_ITERATIONS))
+
+
+def beside_found(evidence: Evidence, problem: Problem, effects: Sequence[Effect]) -> Evidence:
+    """A recording with the encoder's error as the machine of a set shows it, where the set moves resonances.
+
+    A play that is open holds the load by no spring, and its machine has none to show it at.
+    """
+    moves = any(isinstance(effect, (ChainEffect, TransmissionEffect)) for effect in effects)
+    return beside_machine(evidence, showing_encoder(problem, effects)) if moves and not has_play(effects) else evidence
 
 
 def at_rest(problem: Problem, found: Fit) -> tuple[Problem, Fit]:

@@ -58,7 +58,7 @@ def is_seen(without: Standing, found: Standing) -> bool:
     """
     for e, before, after in zip(found.problem.evidence, _squares(without), _squares(found), strict=True):
         for name, square in after.items():
-            if before[name] > LEVEL**2 * e.kept and square < (1 - LEVEL_KNOWN) * before[name]:
+            if before[name] > LEVEL**2 * e.kept.get(name, 1.0) and square < (1 - LEVEL_KNOWN) * before[name]:
                 return True
     return False
 

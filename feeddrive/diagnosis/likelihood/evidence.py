@@ -35,8 +35,8 @@ class Evidence:
         left: channel to what is left of it over its noise, where it weighs no more than that (`Problem.balanced`,
             `weighed_by_rest`).
         open_map: whether comparisons are without what a lead map may be (`lead_map`).
-        kept: mean square of weighted rows that hold nothing but noise of the stated level: 1, or less where some
-            frequencies count for little.
+        kept: channel to the mean square of weighted rows that hold nothing but noise of the stated level, where some
+            frequencies count for little; 1 for a channel that is left out.
     """
 
     recording: Recording
@@ -52,7 +52,7 @@ class Evidence:
     lost: BoolArray | None = field(default=None, kw_only=True)
     left: dict[str, float] = field(default_factory=dict, kw_only=True)
     open_map: bool = field(default=False, kw_only=True)
-    kept: float = field(default=1.0, kw_only=True)
+    kept: dict[str, float] = field(default_factory=dict, kw_only=True)
 
     @property
     def channels(self) -> tuple[str, ...]:

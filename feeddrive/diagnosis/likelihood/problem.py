@@ -120,7 +120,7 @@ class Problem:
         """
         evidence = []
         for e, rows in zip(self.evidence, self.by_channel(self.residual(effects)), strict=True):
-            left = {name: float(np.mean(one**2)) / e.kept for name, one in rows.items()}
+            left = {name: float(np.mean(one**2)) / e.kept.get(name, 1.0) for name, one in rows.items()}
             level = {name: math.sqrt(one) if 0 < one < LEVEL**2 else 1.0 for name, one in left.items()}
             least = {name: min(e.rounded(name) / noise, 1.0) if noise else 0.0 for name, noise in e.noise.items()}
             level = {name: max(one, least[name]) for name, one in level.items()}
@@ -168,7 +168,7 @@ class Problem:
     def noise_square(self) -> float:
         """What the noise alone is expected to leave of the squared residual, each channel weighed as it is."""
         parts = [
-            e.kept * float(e.thinned(e.fit_rows).sum()) / e.left.get(name, 1.0) ** 2
+            e.kept.get(name, 1.0) * float(e.thinned(e.fit_rows).sum()) / e.left.get(name, 1.0) ** 2
             for e in self.evidence
             for name in e.channels
         ]

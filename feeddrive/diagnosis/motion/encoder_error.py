@@ -26,7 +26,11 @@ to widen (`encoder_scores`). It adds to the residual what the declared plant mak
 simulated, and each channel is weighed, frequency by frequency, by the sensor's noise over both, and by how small an
 error of the motion it is,
 
-    gain(f) = 1 / √(1 + S_encoder(f) / S_sensor(f)) / (1 + (ρ(f) / `SMALL`)²)
+    gain(f) = 1 / √(1 + S_encoder(f) / S_sensor(f)) / (1 + (ρ(f) / `SMALL`)²) / (1 + (ρ_c(f) / `SMALL`)²)
+
+ρ_c is the error's share of what was recorded, S_encoder(f) / S_recorded(f): at a pole of the load with the motor held the
+motor hardly moves, in a band too narrow for ρ, and all that the machine is told to do there is error. Its answer is in
+the slope of a damping as well, and drew it to ten times what it was.
 """
 
 from __future__ import annotations
@@ -94,8 +98,8 @@ class EncoderError:
         unsure: of every part of the motion that may not be, channel to what the plant makes of it, in the band, (n,)
             [SI] (`unsure_motion`).
         told: part of the motion that the torque tells, (n,) [rad].
-        kept: share of the noise's power in the band that is left once frequencies of more error than motion count for
-            little.
+        kept: channel to the share of its noise's power in the band that is left once frequencies of much error count
+            for little.
     """
 
     motion: MotorMotion
@@ -104,7 +108,7 @@ class EncoderError:
     added: dict[str, float]
     unsure: tuple[dict[str, FloatArray], ...]
     told: FloatArray
-    kept: float
+    kept: dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -173,7 +177,7 @@ def encoder_error(
         return None
     inner = slice(round(END_CUT / sample_time), -round(END_CUT / sample_time))
     frequencies = np.fft.rfftfreq(len(angle), sample_time)
-    gains, added, units, material = {}, {}, {}, False
+    gains, kept, added, units, material = {}, {}, {}, {}, False
     for name in noise:
         true, *others = (_answer(run, name) for run in runs)
         unit = _per_newton_metre(recording, true, band) if proportional and name == "motor_torque" else 1.0
@@ -183,12 +187,12 @@ def encoder_error(
         frequency, density = _density([error[inner] for error in made], sample_time)
         over = density / (2 * sample_time * (noise[name] / band.noise_gain) ** 2)
         material = material or bool(np.any(over[frequency <= band.edge] > MATERIAL))
-        gains[name] = 1 / np.sqrt(1 + np.interp(frequencies, frequency, over))
+        of_all = np.interp(frequencies, frequency, _share_of_recorded(recording[name][inner], density, sample_time))
+        small = 1 / (1 + (share / SMALL) ** 2) / (1 + (of_all / SMALL) ** 2)
+        gains[name] = small / np.sqrt(1 + np.interp(frequencies, frequency, over))
+        kept[name] = float(np.mean(small[frequencies <= band.edge] ** 2))
     if not material:
         return None
-    small = 1 / (1 + (share / SMALL) ** 2)
-    gains = {name: gain * small for name, gain in gains.items()}
-    kept = float(np.mean(small[frequencies <= band.edge] ** 2))
     held = braked_modes(plant, plant.middle).poles
     parts = unsure_motions(expected, share, sample_time, band.edge, [p for p in held if p.imag > 0])
     moved = (known.uncertain(part) for part in parts)
@@ -294,6 +298,13 @@ def _per_newton_metre(recording: Recording, torque: FloatArray, band: Band) -> f
     known = np.isfinite(recorded)
     needed = band.filter(torque)[known]
     return scale_of(band.filter(np.where(known, recorded, 0.0))[known], needed)
+
+
+def _share_of_recorded(recorded: FloatArray, density: FloatArray, sample_time: float) -> FloatArray:
+    """ρ_c of an error of a power density at its frequencies, (m,), in a channel as recorded, (n,): 1 at most."""
+    known = np.isfinite(recorded)
+    _, whole = _density([np.where(known, recorded, np.mean(recorded[known]))], sample_time)
+    return np.minimum(np.divide(density, whole, out=np.ones_like(density), where=whole > 0), 1.0)
 
 
 def _density(series: Sequence[FloatArray], sample_time: float) -> tuple[FloatArray, FloatArray]:
