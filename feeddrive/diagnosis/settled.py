@@ -66,9 +66,7 @@ def settle(begun: Begun, simulate: bool, progress: Progress, start: Sequence[Eff
     machine = found.problem.machine(found.fit.effects)
     noise = begun.problem.evidence, found.problem.evidence
     shown = showing_encoder(found.problem, found.fit.effects)
-    evidence = [
-        in_told_steps(levelled_alike(one, *noise, shown), machine, found.problem.predictor) for one in evidence
-    ]
+    evidence = [in_told_steps(levelled_alike(one, *noise, shown), machine, found.problem.predictor) for one in evidence]
     progress("judging on data not fitted")
     judged, rehomed = _judged(found, evidence)
     if searched.changes is None:

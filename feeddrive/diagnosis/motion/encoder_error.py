@@ -28,9 +28,9 @@ error of the motion it is,
 
     gain(f) = 1 / √(1 + S_encoder(f) / S_sensor(f)) / (1 + (ρ(f) / `SMALL`)²) / (1 + (ρ_c(f) / `SMALL`)²)
 
-ρ_c is the error's share of what was recorded, S_encoder(f) / S_recorded(f): at a pole of the load with the motor held the
-motor hardly moves, in a band too narrow for ρ, and all that the machine is told to do there is error. Its answer is in
-the slope of a damping as well, and drew it to ten times what it was.
+ρ_c is the error's share of what was recorded, S_encoder(f) / S_recorded(f): at a pole of the load with the motor held
+the motor hardly moves, in a band too narrow for ρ, and all that the machine is told to do there is error. Its answer is
+in the slope of a damping as well, and drew it to ten times what it was.
 """
 
 from __future__ import annotations
