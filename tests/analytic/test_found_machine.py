@@ -36,7 +36,9 @@ def test_evidence_is_new_where_the_encoder_shows_otherwise(
     weighed = replace(evidence, gains={"motor_torque": np.full(frequencies, 0.9)})
     other = np.full(frequencies, 0.9)
     other[7] = gain
-    monkeypatch.setattr(preparing, "weighed_by", lambda e, plant, quieter: replace(e, gains={"motor_torque": other}))
+    monkeypatch.setattr(
+        preparing, "weighed_by", lambda e, plant, quieter, plays: replace(e, gains={"motor_torque": other})
+    )
     there = beside_machine(weighed, axis_plant("bench"))
     assert (there is not weighed) is is_new
 

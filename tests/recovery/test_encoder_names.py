@@ -13,6 +13,7 @@ from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import log_odds, variance_along
 from feeddrive.diagnosis.likelihood.standing import Standing, odds_between
+from feeddrive.diagnosis.motion import encoder_error
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.effects.source.constant_force import ConstantForce
@@ -28,7 +29,7 @@ COUNT = 40
 """Candidates and starts of a round."""
 
 MODE = StructuralMode.of(mass=13.7, frequency=64.9, damping=0.197)
-"""Where a fit of it ends."""
+"""Where a fit of it ends while frequencies of much error count in full."""
 
 FORCE = ConstantForce.of(force=5.0)
 
@@ -38,22 +39,32 @@ def problem(tmp_path_factory: pytest.TempPathFactory) -> Problem:
     return calibrated_case(RINGING, tmp_path_factory.mktemp("ringing"))
 
 
-def test_a_damped_mode_that_filters_the_steps_is_no_name(problem: Problem) -> None:
-    """By the colour of what is left it is likelier than 20 to 1; beside what the steps give, less likely than none."""
-    nothing, mode = fit(problem, ()), fit(problem, [MODE])
-    assert log_odds(problem, nothing, mode, COUNT) > 3.0
-    odds = odds_between(Standing(problem, nothing), Standing(problem, mode), COUNT)
+@pytest.fixture(scope="module")
+def in_full(problem: Problem, tmp_path_factory: pytest.TempPathFactory) -> Problem:
+    """The machine with frequencies that are mostly the encoder's error counted as all others are."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(encoder_error, "_share_of_recorded", lambda recorded, density, time: np.zeros_like(density))
+        return calibrated_case(RINGING, tmp_path_factory.mktemp("in_full"))
+
+
+def test_a_damped_mode_that_filters_the_steps_is_no_name(problem: Problem, in_full: Problem) -> None:
+    """Where all frequencies count it is likelier than 20 to 1 by the colour of what is left, and not beside what the
+    steps give; where those that are mostly error count little nothing speaks for it."""
+    nothing, mode = fit(in_full, ()), fit(in_full, [MODE])
+    assert log_odds(in_full, nothing, mode, COUNT) > 3.0
+    odds = odds_between(Standing(in_full, nothing), Standing(in_full, mode), COUNT)
     assert odds < 0.0
-    assert odds_between(Standing(problem, mode), Standing(problem, nothing), COUNT) == pytest.approx(-odds)
+    assert odds_between(Standing(in_full, mode), Standing(in_full, nothing), COUNT) == pytest.approx(-odds)
+    assert log_odds(problem, fit(problem, ()), fit(problem, [MODE]), COUNT) < 0.0
 
 
-def test_what_the_steps_give_a_force_is_chance(problem: Problem) -> None:
+def test_what_the_steps_give_a_force_is_chance(in_full: Problem) -> None:
     """The mean of four squares of chance is within five times its variance but once in 2000; a mode's is far beyond."""
-    nothing = fit(problem, ())
+    nothing = fit(in_full, ())
     for effect, is_chance in ((FORCE, True), (MODE, False)):
-        having = fit(problem, [effect])
-        steps = encoder_along(problem, problem.machine(()), problem.machine(having.effects))
-        assert (steps < 5 * variance_along(problem, having, nothing, having)) is is_chance
+        having = fit(in_full, [effect])
+        steps = encoder_along(in_full, in_full.machine(()), in_full.machine(having.effects))
+        assert (steps < 5 * variance_along(in_full, having, nothing, having)) is is_chance
 
 
 def test_every_kth_sample_is_weighed_as_all_are(problem: Problem) -> None:

@@ -35,7 +35,7 @@ def test_a_part_that_shakes_is_reported_where_it_matters_or_is_seen(
 
     The recordings are drawn from the motion itself: no encoder's error is in them, which would hide a thousandth.
     """
-    monkeypatch.setattr(refitting, "beside_machine", lambda evidence, plant: evidence)
+    monkeypatch.setattr(refitting, "beside_machine", lambda evidence, plant, plays: evidence)
     plant = axis_plant("bench")
     usual = prepare(pair("bench", "null")[0], plant, 1.0)
     fine = replace(usual, noise={name: noise / finer for name, noise in usual.noise.items()})

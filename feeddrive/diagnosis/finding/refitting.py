@@ -76,10 +76,12 @@ def in_steps_told(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
 def beside_found(evidence: Evidence, problem: Problem, effects: Sequence[Effect]) -> Evidence:
     """A recording with the encoder's error as the machine of a set shows it, where the set moves resonances.
 
-    A play that is open holds the load by no spring, and its machine has none to show it at.
+    A play that is open holds the load by no spring: the machine without it shows what the error makes at its flanks.
     """
-    moves = any(isinstance(effect, (ChainEffect, TransmissionEffect)) for effect in effects)
-    return beside_machine(evidence, showing_encoder(problem, effects)) if moves and not has_play(effects) else evidence
+    if not any(isinstance(effect, (ChainEffect, TransmissionEffect)) for effect in effects):
+        return evidence
+    held = [effect for effect in effects if not has_play([effect])]
+    return beside_machine(evidence, showing_encoder(problem, held), plays=len(held) < len(effects))
 
 
 def at_rest(problem: Problem, found: Fit) -> tuple[Problem, Fit]:

@@ -138,7 +138,7 @@ class Told:
 
 def encoder_error(
     plant: Plant, recording: Recording, band: Band, noise: dict[str, float], proportional: bool = False,
-    acting: FloatArray | None = None,
+    acting: FloatArray | None = None, plays: bool = False,
 ) -> EncoderError | None:  # fmt: skip
     """The encoder's error in a recording; None where it does not matter beside the sensors' noise.
 
@@ -151,6 +151,8 @@ def encoder_error(
             a newton metre is in its unit.
         acting: torque as it acts, in the band [N m], which tells motion that the encoder does not (`told_motion`);
             None where it tells none.
+        plays: whether the load has a free play beside the plant's springs: what moves it by less than that rings it
+            little, and what the plant makes of the error is no measure of ρ_c.
     """
     angle, sample_time = recording["motor_angle"], recording.sample_time
     step = quantisation_step(angle)
@@ -187,8 +189,10 @@ def encoder_error(
         frequency, density = _density([error[inner] for error in made], sample_time)
         over = density / (2 * sample_time * (noise[name] / band.noise_gain) ** 2)
         material = material or bool(np.any(over[frequency <= band.edge] > MATERIAL))
-        of_all = np.interp(frequencies, frequency, _share_of_recorded(recording[name][inner], density, sample_time))
-        small = 1 / (1 + (share / SMALL) ** 2) / (1 + (of_all / SMALL) ** 2)
+        small = 1 / (1 + (share / SMALL) ** 2)
+        if not plays:
+            of_all = _share_of_recorded(recording[name][inner], density, sample_time)
+            small = small / (1 + (np.interp(frequencies, frequency, of_all) / SMALL) ** 2)
         gains[name] = small / np.sqrt(1 + np.interp(frequencies, frequency, over))
         kept[name] = float(np.mean(small[frequencies <= band.edge] ** 2))
     if not material:

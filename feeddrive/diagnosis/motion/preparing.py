@@ -162,7 +162,7 @@ def _noise(
     return noise
 
 
-def weighed_by(evidence: Evidence, plant: Plant, quieter: bool = False) -> Evidence:
+def weighed_by(evidence: Evidence, plant: Plant, quieter: bool = False, plays: bool = False) -> Evidence:
     """The evidence with the encoder's error as a plant shows it: at its resonances, not at those of the declared one.
 
     Args:
@@ -170,17 +170,18 @@ def weighed_by(evidence: Evidence, plant: Plant, quieter: bool = False) -> Evide
         plant: nearer to the machine.
         quieter: whether the noise is less than that beside which it was asked before; where the error did not matter
             then it is asked again.
+        plays: whether the load has a free play beside the springs of the plant (`encoder_error`).
     """
     if not isinstance(evidence, AxisEvidence) or evidence.scaled_from or not (evidence.gains or quieter):
         return evidence
     telling = evidence.measured.get("motor_torque") if evidence.fitted.any() else None
     there = evidence.placed(plant)
     return evidence.with_encoder(
-        encoder_error(there, evidence.recording, evidence.band, evidence.noise, acting=telling)
+        encoder_error(there, evidence.recording, evidence.band, evidence.noise, acting=telling, plays=plays)
     )
 
 
-def beside_machine(evidence: Evidence, plant: Plant) -> Evidence:
+def beside_machine(evidence: Evidence, plant: Plant, plays: bool = False) -> Evidence:
     """The evidence with the encoder's error as a machine that effects have changed shows it; itself where it is alike.
 
     A mass and a spring that are other move a resonance, and a fine encoder that shows nothing at the declared one shows
@@ -189,8 +190,9 @@ def beside_machine(evidence: Evidence, plant: Plant) -> Evidence:
     Args:
         evidence: weighed beside another machine.
         plant: the machine.
+        plays: whether its load has a free play beside its springs.
     """
-    there = weighed_by(evidence, plant, quieter=True)
+    there = weighed_by(evidence, plant, quieter=True, plays=plays)
     if not isinstance(there, AxisEvidence) or not isinstance(evidence, AxisEvidence) or not evidence.gains:
         return there
     moved = [np.max(np.abs(gain - evidence.gains[name])) for name, gain in there.gains.items()]
