@@ -177,6 +177,7 @@ def encoder_error(
         runs = [simulate_driven(plant, one) for one in (motion, *drawn)]
     except SimulationError:
         return None
+    poles = [pole for pole in braked_modes(plant, plant.middle).poles if pole.imag > 0]
     inner = slice(round(END_CUT / sample_time), -round(END_CUT / sample_time))
     frequencies = np.fft.rfftfreq(len(angle), sample_time)
     gains, kept, added, units, material = {}, {}, {}, {}, False
@@ -190,15 +191,14 @@ def encoder_error(
         over = density / (2 * sample_time * (noise[name] / band.noise_gain) ** 2)
         material = material or bool(np.any(over[frequency <= band.edge] > MATERIAL))
         small = 1 / (1 + (share / SMALL) ** 2)
-        if not plays:
+        if poles and not plays:
             of_all = _share_of_recorded(recording[name][inner], density, sample_time)
             small = small / (1 + (np.interp(frequencies, frequency, of_all) / SMALL) ** 2)
         gains[name] = small / np.sqrt(1 + np.interp(frequencies, frequency, over))
         kept[name] = float(np.mean(small[frequencies <= band.edge] ** 2))
     if not material:
         return None
-    held = braked_modes(plant, plant.middle).poles
-    parts = unsure_motions(expected, share, sample_time, band.edge, [p for p in held if p.imag > 0])
+    parts = unsure_motions(expected, share, sample_time, band.edge, poles)
     moved = (known.uncertain(part) for part in parts)
     answers = _made_of(plant, expected + told, moved, sample_time)
     unsure = [{name: units[name] * band.filter(one[name]) for name in noise} for one in answers]
