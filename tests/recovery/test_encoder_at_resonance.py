@@ -1,4 +1,4 @@
-"""The encoder's error where a resonance magnifies it: how much it counts, which machine shows it, intervals."""
+"""The encoder's error where a resonance magnifies it: how much it counts, and which machine shows it."""
 
 from __future__ import annotations
 
@@ -9,18 +9,12 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration.calibrate import showing_encoder
-from feeddrive.diagnosis.certainty import uncertainty
-from feeddrive.diagnosis.certainty.encoder_scatter import encoder_scatter
-from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion import encoder_error
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.diagnosis.motion.encoder_error import SMALL
 from feeddrive.diagnosis.motion.preparing import weighed_by
-from feeddrive.effects.chain.payload import Payload
-from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.plant.analysis.modes import braked_modes
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import read_recording
@@ -29,10 +23,6 @@ from tests.recovery.fleet.problem import calibrated_case
 
 RINGING = ENCODER_NULLS + 17_752
 """A machine of 442 kg with 17 bits and a scale of 0.5 µm, at 2 kHz, that lacks nothing."""
-
-FINE = ENCODER_NULLS + 24_752
-
-STEPS = np.array([1e-2])
 
 
 @pytest.fixture(scope="module")
@@ -83,32 +73,6 @@ def test_a_damping_above_the_declared_one_does_not_hide_the_error(problem: Probl
     fallen = problem.at_values(np.full(len(known.values), -1.0))
     assert showing_encoder(fallen, ()).chain_values()["axial_damping"] < declared["axial_damping"]
     assert showing_encoder(replace(problem, calibration=None), ()).chain_values() == declared
-
-
-def test_what_the_steps_scatter_slopes_by(problem: Problem, tmp_path: Path) -> None:
-    """As a variance; none where the encoder tells its motion, and none beside a free play."""
-    scatter = encoder_scatter(problem, [Payload.of(mass=20.0)], STEPS)
-    assert scatter.shape == (1, 1) and scatter[0, 0] > 0
-    both = encoder_scatter(problem, [Payload.of(mass=20.0), Payload.of(mass=10.0)], np.array([1e-2, 1e-2]))
-    np.testing.assert_allclose(both, both.T)
-    assert np.min(np.linalg.eigvalsh(both)) > -1e-9 * np.max(both)
-    play = encoder_scatter(problem, [Backlash.of(width=1e-6)], STEPS)
-    assert not play.any()
-    fine = calibrated_case(FINE, tmp_path)
-    assert not encoder_scatter(fine, [Payload.of(mass=20.0)], STEPS).any()
-
-
-@pytest.mark.parametrize("times", [0.25, 4.0])
-def test_an_interval_is_that_of_the_scatter_where_it_is_the_larger(
-    problem: Problem, times: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    found = fit(problem, [Payload.of(mass=20.0)])
-    monkeypatch.setattr(uncertainty, "encoder_scatter", lambda problem, effects, steps: np.zeros((1, 1)))
-    alone = certainty(problem, found).covariance[0, 0]
-    information = float(np.sum(uncertainty.slopes(problem, found) ** 2))
-    given = np.array([[times * alone * information**2]])
-    monkeypatch.setattr(uncertainty, "encoder_scatter", lambda problem, effects, steps: given)
-    assert certainty(problem, found).covariance[0, 0] == pytest.approx(max(times, 1.0) * alone, rel=1e-6)
 
 
 @pytest.mark.slow

@@ -3,12 +3,10 @@
     cov = (J'J)^-1 S (J'J)^-1
 
 S, the covariance of J'r, comes from the spectrum of the residual (`noise_colour`), and along what declared values may
-do from noise and their tolerances (`_scores`). Three things that a spectrum cannot see widen a coordinate's interval:
+do from noise and their tolerances (`_scores`). Two things that a spectrum cannot see widen a coordinate's interval:
 
 - where the residual is larger at the samples that tell of the coordinate than elsewhere (misfit at reversals), by the
   ratio of the two;
-- where the encoder's steps scatter it more than the spectrum says, as slopes hold the same error, motions that are
-  drawn are believed (`encoder_scatter`);
 - where sums over blocks of time scatter more than the spectrum says, beyond chance, the blocks are believed instead:
   they count correlation of any form, but are few, so that alone they would make every interval wide and uncertain.
 
@@ -29,7 +27,6 @@ import numpy as np
 from scipy.special import chdtri, stdtrit
 
 from feeddrive.diagnosis.calibration.value_slopes import SHORT
-from feeddrive.diagnosis.certainty.encoder_scatter import encoder_scatter
 from feeddrive.diagnosis.certainty.information import inverse_information
 from feeddrive.diagnosis.certainty.noise_colour import fitted_away, score_covariance, spectral_freedom
 from feeddrive.diagnosis.likelihood.coordinates import (
@@ -85,11 +82,11 @@ def certainty(problem: Problem, fitted: Fit, held: Sequence[int] = ()) -> Certai
     count = fitted.jacobian.shape[1]
     if not count or not fitted.effects:
         return Certainty(np.zeros((0, 0)), np.zeros(0))
-    jacobian, scatter = slopes(problem, fitted), _scatter(problem, fitted)
+    jacobian = slopes(problem, fitted)
     if not held:
-        return _certainty(problem, fitted, jacobian, scatter)
+        return _certainty(problem, fitted, jacobian)
     free = np.setdiff1d(np.arange(count), held)
-    known = _certainty(problem, fitted, jacobian[:, free], scatter[np.ix_(free, free)])
+    known = _certainty(problem, fitted, jacobian[:, free])
     covariance, reach = np.zeros((count, count)), np.ones(count)
     covariance[np.ix_(free, free)], reach[free] = known.covariance, known.reach
     return Certainty(covariance, reach)
@@ -111,25 +108,15 @@ def certainty_along(problem: Problem, fitted: Fit, group: IntegerArray) -> tuple
         Directions of the group's coordinates, in columns, (n, n), and how well the coordinates along them are known.
     """
     jacobian = slopes(problem, fitted)
-    others = np.delete(np.arange(jacobian.shape[1]), group)
-    apart = np.zeros((jacobian.shape[1], len(group)))
-    apart[group] = np.eye(len(group))
-    if len(others):
-        apart[others] = -np.linalg.lstsq(jacobian[:, others], jacobian[:, group], rcond=None)[0]
-    own = jacobian @ apart
+    own, others = jacobian[:, group], np.delete(jacobian, group, axis=1)
+    if others.shape[1]:
+        own = own - others @ np.linalg.lstsq(others, own, rcond=None)[0]
     _, _, rows = np.linalg.svd(own, full_matrices=False)
-    along = apart @ rows.T
-    return rows.T, _certainty(problem, fitted, own @ rows.T, along.T @ _scatter(problem, fitted) @ along)
+    return rows.T, _certainty(problem, fitted, own @ rows.T)
 
 
-def _scatter(problem: Problem, fitted: Fit) -> FloatArray:
-    """What the encoder's steps scatter the scores of the coordinates by, (k, k)."""
-    steps = _steps(problem, fitted)
-    return encoder_scatter(problem, fitted.effects, np.where(steps > 0, steps, difference_of(problem)))
-
-
-def _certainty(problem: Problem, fitted: Fit, jacobian: FloatArray, scatter: FloatArray) -> Certainty:
-    """How well coordinates are known of which these are the slopes, (m, k), and the encoder's scatter, (k, k)."""
+def _certainty(problem: Problem, fitted: Fit, jacobian: FloatArray) -> Certainty:
+    """How well coordinates are known of which these are the slopes, (m, k)."""
     inverse = inverse_information(jacobian.T @ jacobian)
     rows = [evidence.fit_rows for evidence in problem.evidence]
     middle = _scores(problem, rows, fitted.residual, jacobian)
@@ -139,7 +126,6 @@ def _certainty(problem: Problem, fitted: Fit, jacobian: FloatArray, scatter: Flo
     covariance = inverse @ middle @ inverse
     missed = np.diag(inverse @ fitted_away(problem.evidence, rows, jacobian, inverse) @ inverse)
     widened = np.sqrt(_where_it_matters(problem, fitted.residual, influence) / _left(missed, np.diag(inverse)))
-    widened = widened * _beyond(np.diag(inverse @ scatter @ inverse), np.diag(covariance) * widened**2)
     covariance = covariance * np.outer(widened, widened)
     blocks, freedom = _by_blocks(fitted.residual, influence, blocks_in_time(problem))
     spread = np.diag(covariance)
@@ -148,12 +134,6 @@ def _certainty(problem: Problem, fitted: Fit, jacobian: FloatArray, scatter: Flo
     covariance = covariance * np.outer(more, more) + influence.T @ (model[:, None] * influence) / 1.96**2
     reach = stdtrit(np.where(believed, freedom, max(spectral_freedom(problem.evidence, rows), 2.0)), 0.975)
     return Certainty(covariance, reach)
-
-
-def _beyond(larger: FloatArray, variance: FloatArray) -> FloatArray:
-    """Factor on deviations, (k,), that brings variances to others where these are larger."""
-    factor: FloatArray = np.sqrt(np.maximum(larger / np.where(variance > 0, variance, np.inf), 1.0))
-    return factor
 
 
 def _scores(

@@ -24,8 +24,11 @@ are simulated once more).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.plant.plant import Plant
@@ -40,13 +43,15 @@ def encoder_along(problem: Problem, plain: Plant, other: Plant) -> float:
         plain: the machine with the set of fewer values, and the declared values that it stands beside.
         other: that with the other set.
     """
-    count = max((len(e.at_draws) for e in problem.evidence), default=0)
+    drawn = [e.at_draws for e in problem.evidence]
+    count = max((len(draws) for draws in drawn), default=0)
     if not count:
         return 0.0
-    expected, along = drawn_rows(problem, plain, None), []
+    expected, along = _rows(problem, plain, problem.evidence), []
     for draw in range(count):
-        here = drawn_rows(problem, plain, draw)
-        difference = drawn_rows(problem, other, draw) - here
+        at = [draws[draw] if draws else e for draws, e in zip(drawn, problem.evidence, strict=True)]
+        here = _rows(problem, plain, at)
+        difference = _rows(problem, other, at) - here
         length = float(np.linalg.norm(difference))
         along.append(float(difference @ (expected - here)) / length if length > 0 else 0.0)
     known = np.array([one for one in along if np.isfinite(one)])
@@ -56,15 +61,11 @@ def encoder_along(problem: Problem, plain: Plant, other: Plant) -> float:
     return float(np.mean(known**2)) if plays else max(float(np.mean(known)), 0.0) ** 2
 
 
-def drawn_rows(problem: Problem, machine: Plant, draw: int | None) -> FloatArray:
-    """W times what a machine makes of a motion that is drawn, weighed as the recordings are, (m,).
-
-    Of a recording whose encoder tells its motion, and of all where no draw is named, it is the motion as expected. What
-    is measured beside the recordings does not move with it, and is 0.
-    """
-    parts = []
-    for e in problem.evidence:
-        at = e if draw is None or not e.at_draws else e.at_draws[draw]
-        parts.append(e.weighted(problem.predictor.predict(machine, at), e.thinned(e.fit_rows)))
+def _rows(problem: Problem, machine: Plant, at: Sequence[Evidence]) -> FloatArray:
+    """W times what a machine makes of motions, weighed as the recordings are, (m,); no number measured beside them."""
+    parts = [
+        e.weighted(problem.predictor.predict(machine, one), e.thinned(e.fit_rows))
+        for e, one in zip(problem.evidence, at, strict=True)
+    ]
     rows = np.concatenate([*parts, np.zeros(len(problem.numbers))])
     return rows if problem.whitener is None else problem.whitener.applied(rows)
