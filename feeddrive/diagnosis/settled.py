@@ -12,6 +12,7 @@ from feeddrive.diagnosis.certainty.inclusion import asserted
 from feeddrive.diagnosis.certainty.preferred import judged_apart, judged_as_good, with_the_preferred
 from feeddrive.diagnosis.finding.elsewhere import at_likelier_place
 from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.asked_of_fit import sizes_around_none
 from feeddrive.diagnosis.judging.denied_again import settled_names
 from feeddrive.diagnosis.judging.judge import Judged, prepared_for_judging
 from feeddrive.diagnosis.judging.law_tables import with_law_tables
@@ -87,10 +88,7 @@ def settle(begun: Begun, simulate: bool, progress: Progress, start: Sequence[Eff
     if sure is not found:
         found, judged = sure, judge(sure)
         rivals = rivals_of(found, judged)
-    further = fitted_to_the_end(found.problem, found.fit)
-    if further is not found.fit:
-        found = replace(found, fit=further)
-        judged = judge(found)
+    found, judged, rivals = _at_the_end(found, judged, rivals, judge)
     found, judged = not_worse_than_declared(found, judged, judge)
     judged, rehomed = _judged(found, evidence)
     weighed, refinement = found, Refinement(found, (judged, rehomed))
@@ -102,6 +100,26 @@ def settle(begun: Begun, simulate: bool, progress: Progress, start: Sequence[Eff
     if changes is not None:  # beside the declared values of the names that are left
         changes = replace(changes, problem=found.problem, fit=found.fit)
     return Settled(Searched(found, changes), rivals, judged, rehomed, refinement, weighed)
+
+
+def _at_the_end(
+    found: Search, judged: list[Judged], rivals: list[list[Rival]], judge: Callable[[Search], list[Judged]]
+) -> tuple[Search, list[Judged], list[list[Rival]]]:
+    """The search with its fit at the end, without names whose intervals hold none of them there.
+
+    A play that stands in for the law of a friction was told from none where the fit was asked, and not where it ended.
+    """
+    further = fitted_to_the_end(found.problem, found.fit)
+    if further is found.fit:
+        return found, judged, rivals
+    found = replace(found, fit=further)
+    judged = judge(found)
+    if not any(sizes_around_none(found.problem, further)):
+        return found, judged, rivals
+    kept, after = without_denied(found, judged, judge)
+    if len(kept.fit.effects) == len(further.effects):
+        return found, judged, rivals
+    return kept, after, rivals_of(kept, after)
 
 
 def _with_preferred_names(

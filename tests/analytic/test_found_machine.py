@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis import settled
 from feeddrive.diagnosis.certainty import one_sided, uncertainty
 from feeddrive.diagnosis.certainty.uncertainty import Certainty
+from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.likelihood.fit import MOVED, fit, fitted_to_the_end, linear_step
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.motion import preparing
@@ -98,3 +100,29 @@ def test_an_end_of_an_interval_may_be_where_the_fit_is(evidence: AxisEvidence, m
     assert span["force"] is not None
     (ends,) = span["force"]
     assert ends == pytest.approx((5.0, 10.0))
+
+
+@pytest.mark.parametrize("told", [False, True])
+def test_a_name_that_the_last_fit_does_not_tell_from_none_goes(
+    evidence: AxisEvidence, monkeypatch: pytest.MonkeyPatch, told: bool
+) -> None:
+    """A play of 85 µm, told from none where the fit was asked, ended as [0, 272] µm beside a bristle, and was named."""
+    problem = Problem(axis_plant("bench"), (evidence,), AxisPredictor())
+    force = EFFECTS["constant_force"].of(force=5.0)
+    found = Search(problem, fit(problem, [force], iterations=0), (), (), {})
+    further, without = fit(problem, [force], iterations=0), replace(found, fit=fit(problem, ()))
+    asked = []
+
+    def denied(other: Search, judged: Any, judge: Any) -> tuple[Search, list[Any]]:
+        asked.append(other.fit)
+        return without, ["judged without it"]
+
+    monkeypatch.setattr(settled, "fitted_to_the_end", lambda problem, fitted: further)
+    monkeypatch.setattr(settled, "sizes_around_none", lambda problem, fitted: ["" if told else "around none"])
+    monkeypatch.setattr(settled, "without_denied", denied)
+    monkeypatch.setattr(settled, "rivals_of", lambda kept, judged: [])
+    kept, judged, rivals = settled._at_the_end(found, [], [["as before"]], lambda other: ["judged"])  # type: ignore[list-item, arg-type, return-value]
+    if told:
+        assert (kept.fit, judged, rivals, asked) == (further, ["judged"], [["as before"]], [])
+    else:
+        assert (kept, judged, rivals) == (without, ["judged without it"], []) and asked == [further]
