@@ -40,7 +40,7 @@ def problem(tmp_path_factory: pytest.TempPathFactory) -> Problem:
 
 
 @pytest.fixture(scope="module")
-def in_full(problem: Problem, tmp_path_factory: pytest.TempPathFactory) -> Problem:
+def in_full(tmp_path_factory: pytest.TempPathFactory) -> Problem:
     """The machine with frequencies that are mostly the encoder's error counted as all others are."""
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(encoder_error, "_share_of_recorded", lambda recorded, density, time: np.zeros_like(density))
