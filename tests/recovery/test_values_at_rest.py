@@ -12,19 +12,27 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated, moved
 from feeddrive.diagnosis.calibration.calibration import whitener
 from feeddrive.diagnosis.calibration.together import cost, stepped_together
 from feeddrive.diagnosis.calibration.value_slopes import ENOUGH, with_new_slopes
+from feeddrive.diagnosis.certainty.inclusion import OPEN, asserted
 from feeddrive.diagnosis.finding import search as searching
-from feeddrive.diagnosis.finding.refitting import at_rest
+from feeddrive.diagnosis.finding.refitting import at_rest, refitted
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import Scene
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.finding.sets import members_weighed
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.effects.friction.load_dependent_friction import LoadDependentFriction
 from feeddrive.effects.source.torque_ripple import TorqueRipple
+from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
 from tests.recovery.fleet.problem import calibrated_case
 from tests.recovery.rigid_runs import Truth
 from tests.recovery.test_value_asked_once import begun
 
 STIFFER = 700_773
 """A machine of 596 kg whose axial spring is 1.3 times the declared one, shaken up to its resonance."""
+
+SOFTER = 704_075
+"""A machine of 29 kg with a friction of the load, whose axial spring is 0.85 of the declared one; torque alone."""
 
 
 @pytest.mark.parametrize("away", [-3.0, 3.0])
@@ -55,6 +63,20 @@ def test_slopes_at_rest_are_those_of_where_it_is(tmp_path: Path, away: float) ->
     columns, others = there.whitener.columns, anew.whitener.columns
     # the step of a slope is a thousandth of a value, and a slope is off by as much
     assert np.linalg.norm(columns - others) < 1e-3 * np.linalg.norm(others)
+
+
+def test_name_is_weighed_against_values_at_rest_without_it(tmp_path: Path) -> None:
+    """By slopes it is beyond doubt, and a spring that is softer within its tolerance says as much."""
+    problem = calibrated_case(SOFTER, tmp_path)
+    along = StiffnessVsPosition.of(share_over_stroke=0.142, middle_compliance=0.145, low=0.05, high=1.05)
+    problem, found = refitted(problem, fit(problem, (LoadDependentFriction.of(coefficient=0.029), along)))
+    search = Search(problem, found, (), (), {})
+    by_slopes = members_weighed(problem, found, search.count)
+    assert all(one.gain < -10 * OPEN for one in by_slopes)
+    kept = asserted(search)
+    assert [effect.name for effect in kept.fit.effects] == [LoadDependentFriction.name]
+    (denied,) = kept.near
+    assert denied.name == StiffnessVsPosition.name and denied.gain < 0
 
 
 def test_tolerances_are_asked_of_values_at_rest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -74,7 +74,7 @@ def asserted(found: Search) -> Search:
         members = _members_at_rest(found)
         place = max(range(len(members)), key=lambda i: members[i].gain)
         one = members[place]
-        if one.gain <= -OPEN or one.without is None:
+        if one.gain <= -OPEN:
             return found
         near = Near(found.fit.effects[place].name, -one.gain, -one.speaks)
         found = replace(found, problem=one.without.problem, fit=one.without.fit, near=(near, *found.near))
@@ -88,20 +88,20 @@ class _Member:
     Attributes:
         gain: logarithm of the odds for the set without it.
         speaks: part of it that grows with the time recorded.
-        without: that set, its declared values at rest; None for a member that is sure.
+        without: that set, its declared values at rest.
     """
 
     gain: float
     speaks: float
-    without: Standing | None
+    without: Standing
 
 
 def _members_at_rest(search: Search) -> tuple[_Member, ...]:
-    """Per member of a set, the set without it; both with their declared values at rest where it is not sure.
+    """Per member of a set, the set without it; both with their declared values at rest.
 
-    Slopes say of the values what holds near the set at hand: that is enough of a member that is sure (`SURE`). Behind
-    an encoder whose steps show none is: a braked mode takes what they are asked with, and the values that stand beside
-    it tell it by fifty nats and more, where those that suit the set without it tell nothing.
+    Slopes say of the values what holds near the set at hand. A stiffness along the stroke that is fifty nats likelier
+    than nothing by them may be what a spring a deviation softer says as well, and beside an encoder whose steps show
+    the values that stand beside a braked mode tell it, where those that suit the set without it tell nothing.
     """
     for fitted, weighed in search.weighed:
         if fitted is search.fit:
@@ -114,15 +114,9 @@ def _members_at_rest(search: Search) -> tuple[_Member, ...]:
 def _weighed_at_rest(search: Search) -> tuple[_Member, ...]:
     problem, found, count = search.problem, search.fit, search.count
     members = members_weighed(problem, found, count)
-    least = math.inf if any(e.at_draws for e in problem.evidence) else SURE
-    if all(one.gain <= -least for one in members):
-        return tuple(_Member(one.gain, one.speaks, None) for one in members)
     stands, curves = Standing(*at_rest(problem, found)), _odds_of_curves(search)
     result = []
     for place, one in enumerate(members):
-        if one.gain <= -least:
-            result.append(_Member(one.gain, one.speaks, None))
-            continue
         named = found.effects[place]
         without, gain = _without_at_rest(search, stands, place)
         gain -= curves.get(named.name, 0.0)
