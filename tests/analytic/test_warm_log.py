@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.heat.warm import prepare_warm, warm_predictor
 from feeddrive.diagnosis.preparation import Shown, shown
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
@@ -114,3 +115,20 @@ def test_a_log_shows_both_motion_and_heat() -> None:
     heat_alone = {"screw_speed": np.abs(log["motor_angle"]), **nut}
     assert shown(axis().plant, [_recording(heat_alone)]) is Shown.HEAT
     assert shown(axis().plant, [log]) is Shown.MOTION
+
+
+def test_prediction_of_a_log_answers_the_chain() -> None:
+    """A spring half as stiff gives way twice as far, with a prediction of the stiff one at hand."""
+    log, _ = cycling()
+    plant, noise = axis().plant, 1e-7 * np.random.default_rng(3).standard_normal(len(log))
+    table = plant.chain.motor_radius * log["motor_angle"] + noise
+    nut = np.full(len(log), 20.0) + 1e5 * noise
+    recording = _recording({**log.channels, "table_position": table, "nut_temperature": nut})
+    evidence, predictor = prepare_warm(recording, plant, 1.0), warm_predictor(plant)
+    stiffness = plant.chain_values()["axial_stiffness"]
+    softer = plant.with_chain_values({**plant.chain_values(), "axial_stiffness": 0.5 * stiffness})
+    positions = [predictor.predict(one, evidence)["table_position"] for one in (plant, softer)]
+    left = (positions[0] - positions[1])[evidence.counted] * np.sign(evidence.log.speed[evidence.counted])
+    # the guide's drag over the spring once more, by its lead: 55 N and 180 N s/m, as the file has them
+    drag = 55.0 + 180.0 * np.abs(evidence.log.speed[evidence.counted]) * plant.chain.motor_radius
+    np.testing.assert_allclose(left, drag / stiffness, rtol=1e-6)

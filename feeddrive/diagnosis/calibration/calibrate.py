@@ -29,7 +29,7 @@ PASSES = 8
 
 def calibrated(problem: Problem) -> Problem:
     """The problem with its declared values fitted within their tolerances, nothing else being there."""
-    if problem.calibration is not None or not problem.predictor.of_motion:
+    if problem.calibration is not None or not problem.predictor.answers_chain:
         return problem
     values = calibrated_values(problem.plant)
     if not values:

@@ -206,17 +206,21 @@ class WarmPredictor(Predictor[WarmEvidence]):
     _powers: Remembered[dict[str, FloatArray]] = field(default_factory=lambda: Remembered(_size_of_powers))
 
     @property
+    def answers_chain(self) -> bool:
+        """Torque and table position do."""
+        return True
+
+    @property
     def candidates(self) -> tuple[Candidate, ...]:
         """Effects on heat, and those on motion that uniform motion shows."""
         return (*HEAT_CANDIDATES, *(one for one in CANDIDATES if one.name in IN_UNIFORM_MOTION))
 
     def run(self, plant: Plant, evidence: WarmEvidence) -> WarmRun:
         """What the plant does in the log."""
-        log = evidence.log
-        powers = self._powers.found(log, effects_key(plant.motion_effects), lambda: friction_powers(plant, log))
-        return self._known.found(
-            log, effects_key(plant.effects), lambda: simulate_log(plant, self._model(plant), log, powers)
-        )
+        log, chain = evidence.log, tuple(plant.chain_values().items())
+        moving, whole = (chain, effects_key(plant.motion_effects)), (chain, effects_key(plant.effects))
+        powers = self._powers.found(log, moving, lambda: friction_powers(plant, log))
+        return self._known.found(log, whole, lambda: simulate_log(plant, self._model(plant), log, powers))
 
     def predict(self, plant: Plant, evidence: WarmEvidence) -> dict[str, FloatArray]:
         """Channel to its prediction, (n,) [N m, m, degC]."""

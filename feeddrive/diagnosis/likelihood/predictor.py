@@ -36,10 +36,15 @@ class Predictor(ABC, Generic[E]):
     def of_motion(self) -> bool:
         """Whether a motion is predicted sample by sample.
 
-        Declared values of the chain are fitted within their tolerances then, levels are compared between recordings,
-        what no name explains is carried as tables, and a closed loop can be simulated.
+        Levels are compared between recordings then, what no name explains is carried as tables, and a closed loop can
+        be simulated.
         """
         return False
+
+    @property
+    def answers_chain(self) -> bool:
+        """Whether predictions depend on values of the chain and its friction: those are fitted within tolerances."""
+        return self.of_motion
 
     @property
     @abstractmethod

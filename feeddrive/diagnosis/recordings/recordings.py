@@ -150,6 +150,11 @@ class RecordingPredictor(Predictor[Any]):
         return self.inner.of_motion
 
     @property
+    def answers_chain(self) -> bool:
+        """As the inner one."""
+        return self.inner.answers_chain
+
+    @property
     def candidates(self) -> tuple[Candidate, ...]:
         """Effects that are tried."""
         return self.inner.candidates
