@@ -22,6 +22,7 @@ from itertools import pairwise
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.metrology.finite import refuse_unknown
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
 
@@ -49,6 +50,7 @@ class Deviations:
         shapes = {np.shape(one) for one in (self.positions, self.forward, self.reverse)}
         if len(shapes) != 1 or np.ndim(self.positions) != 1 or len(self.positions) < 2:
             raise InputError("is not two positions or more with one value a direction", "deviations", "give arrays")
+        refuse_unknown("deviations", positions=self.positions, forward=self.forward, reverse=self.reverse)
         if np.any(np.diff(self.positions) <= 0):
             raise InputError("the positions do not ascend", "deviations", "sort them, each once")
 

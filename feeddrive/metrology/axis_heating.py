@@ -22,6 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.metrology.finite import refuse_unknown
 from feeddrive.typing import FloatArray
 
 _BAND = 0.05
@@ -70,6 +71,7 @@ def axis_heating(times: FloatArray, error: FloatArray, positions: FloatArray, st
     if not fits or np.any(np.diff(times) <= 0) or np.any(np.diff(positions) <= 0):
         what = f"errors of shape {np.shape(error)} at {len(times)} times and {len(positions)} positions"
         raise InputError(what, "error", "give a row a time and a column a target, times and targets ascending")
+    refuse_unknown("axis heating", times=times, error=error, positions=positions)
     if not _HOUR <= stop <= times[-1]:
         what = f"the axis stops after {stop / 60:.4g} min of {times[-1] / 60:.4g} min"
         raise InputError(what, "stop", "heat for an hour at least, within the test")

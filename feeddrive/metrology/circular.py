@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.metrology.finite import refuse_unknown
 from feeddrive.typing import FloatArray
 
 GLITCH_SPAN = math.radians(30.0)
@@ -60,6 +61,7 @@ def circular(angle: FloatArray, position: FloatArray, radius: float) -> Circular
 
     Raises InputError for less than one turn.
     """
+    refuse_unknown("circular test", angle=angle, position=position)
     if len(angle) < 8 or angle[-1] - angle[0] < 2 * math.pi * (1 - 1e-3):
         raise InputError("less than one turn at constant feed", "circular test", "make more turns")
     sine, cosine = np.sin(angle), np.cos(angle)
@@ -133,6 +135,7 @@ def whole_turns(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
 
     In the overshoot the axes start and stop, and points there would weigh twice.
     """
+    refuse_unknown("circular test", x=x, y=y)
     centre, _ = least_squares_circle(x, y)
     angle = np.abs(np.unwrap(np.arctan2(y - centre[1], x - centre[0])) - math.atan2(y[0] - centre[1], x[0] - centre[0]))
     turned, gap = float(angle[-1]), float(angle[-1]) / max(1, len(angle) - 1)

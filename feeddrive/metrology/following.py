@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.metrology.finite import refuse_unknown
 from feeddrive.typing import FloatArray
 
 
@@ -37,6 +38,7 @@ def following(setpoint: FloatArray, position: FloatArray) -> Following:
     """
     if not len(setpoint):
         raise InputError("no sample for a following error", "following", "record a longer time")
+    refuse_unknown("following", setpoint=setpoint, position=position)
     error = setpoint - position
     return Following(float(np.sqrt(np.mean(error**2))), float(np.max(np.abs(error))), float(np.mean(error)))
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.metrology.finite import refuse_unknown
 from feeddrive.typing import FloatArray
 
 
@@ -32,6 +33,7 @@ def force_loop(force: FloatArray, displacement: FloatArray) -> ForceLoop:
 
     Raises InputError for a force that does not change its sign on both ways.
     """
+    refuse_unknown("force loop", force=force, displacement=displacement)
     rising = np.gradient(force) > 0
     at_zero = [_at_zero(force[branch], displacement[branch]) for branch in (rising, ~rising)]
     # slope of the compliance: displacement follows force, whose samples are exact
@@ -76,6 +78,7 @@ def torque_loop(position: FloatArray, torque: FloatArray, lead: float) -> Torque
 
     Raises InputError for a position that does not move to and fro.
     """
+    refuse_unknown("torque loop", position=position, torque=torque)
     low, high = float(position.min()), float(position.max())
     forward = np.gradient(position) > 0
     middle = np.abs(position - 0.5 * (low + high)) < 0.1 * (high - low)
@@ -119,6 +122,7 @@ def friction_map(velocity: FloatArray, torque: FloatArray, lead: float) -> tuple
     points = []
     for speed in speeds:
         at = torque[rounded == speed]
+        refuse_unknown("friction map", torque=at)
         mean = float(at.mean())
         points.append(FrictionPoint(float(speed), mean, float(at.std()), mean * 2 * np.pi / lead))
     return tuple(points)

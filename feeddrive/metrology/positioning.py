@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.metrology.finite import refuse_unknown
 from feeddrive.typing import FloatArray
 
 EDITION = "ISO 230-2:2014"
@@ -81,6 +82,7 @@ def one_direction(deviations: FloatArray) -> OneDirection:
     if deviations.ndim != 2 or deviations.shape[1] < 2 or not len(deviations):
         what = f"deviations of shape {deviations.shape}"
         raise InputError(what, "ISO 230-2", "approach every target at least twice from the same side")
+    refuse_unknown("ISO 230-2", deviations=deviations)
     mean, s = deviations.mean(axis=1), deviations.std(axis=1, ddof=1)
     accuracy = float((mean + 2 * s).max() - (mean - 2 * s).min())
     return OneDirection(mean, s, float(4 * s.max()), float(np.ptp(mean)), accuracy)
@@ -94,6 +96,7 @@ def positioning(target: FloatArray, up: FloatArray, down: FloatArray) -> Positio
     if up.shape != down.shape or up.ndim != 2 or up.shape[0] != len(target) or up.shape[1] < 2:
         what = f"deviations of shape {up.shape} and {down.shape} at {len(target)} targets"
         raise InputError(what, "ISO 230-2", "approach every target at least twice from both sides")
+    refuse_unknown("ISO 230-2", target=target)
     one, other = one_direction(up), one_direction(down)
     reversal, mean = one.mean - other.mean, 0.5 * (one.mean + other.mean)
     s_up, s_down = one.deviation, other.deviation

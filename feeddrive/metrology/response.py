@@ -30,6 +30,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.metrology.finite import refuse_unknown
 from feeddrive.plant.analysis.ode import OUTPUTS
 from feeddrive.plant.analysis.steady import MOVING
 from feeddrive.recording.recording import Recording
@@ -78,6 +79,7 @@ def measured_response(given: FloatArray, output: FloatArray, sample_time: float,
     """
     if len(given) < segment:
         raise InputError(f"{len(given)} samples for windows of {segment}", "frequency response", "record longer")
+    refuse_unknown("frequency response", input=given, output=output)
     options = {"fs": 1 / sample_time, "nperseg": segment, "detrend": "constant"}
     from scipy import signal  # takes a second to import
 
@@ -102,6 +104,7 @@ def periodic_response(
     periods = len(given) // period
     if periods < 1:
         raise InputError(f"{len(given)} samples for a period of {period}", "frequency response", "record longer")
+    refuse_unknown("frequency response", input=given, output=output)
     index = np.round(lines * period * sample_time).astype(np.int64)
     spectra = [
         np.fft.rfft(_level(values[len(values) - periods * period :].reshape(periods, period)), axis=1)[:, index]
@@ -150,6 +153,7 @@ def step_response(time: FloatArray, values: FloatArray, at: float) -> StepRespon
     after = values[first:]
     if first < 1 or len(after) < 20:
         raise InputError("too few samples about the step", "step response", "record before and after the step")
+    refuse_unknown("step response", values=values[first - 1 :])
     start, final = float(values[first - 1]), float(np.mean(after[-max(1, len(after) // 20) :]))
     height = final - start
     if height == 0:

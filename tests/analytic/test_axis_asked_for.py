@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -36,12 +37,19 @@ def test_a_name_that_is_none_is_one_line(name: str, tmp_path: Path) -> None:
         asked[name]("no_axis")
 
 
-def test_a_wish_for_a_channel_is_not_passed_over(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "wish",
+    [
+        {"channels": {"motor_torque": "foo"}}, {"lead": "10 mm"}, {"rate": "1 kHz"}, {"part": 1}, {"axis": "X1"},
+        {"sample_time": "1 ms"}, {"columns": ("time",)},
+    ],
+)  # fmt: skip
+def test_a_wish_is_not_passed_over(wish: dict[str, Any], tmp_path: Path) -> None:
     """Headings of the package's own say which is which: a file that is wished otherwise is refused."""
     rows = "".join(f"{k / 1000},{k},{k}\n" for k in range(50))
     (tmp_path / "own.csv").write_text("time [s],motor_torque [N m],motor_angle [rad]\n" + rows, encoding="utf-8")
     with pytest.raises(fd.InputError, match="canonical headings"):
-        fd.inspect(tmp_path / "own.csv", channels={"motor_torque": "foo"})
+        fd.inspect(tmp_path / "own.csv", **wish)
 
 
 @pytest.mark.parametrize(

@@ -28,6 +28,7 @@ from enum import Enum
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.metrology.finite import refuse_unknown
 from feeddrive.thermal.rig import refuse_unless
 from feeddrive.typing import FloatArray
 
@@ -129,6 +130,7 @@ def line_table(
     line = straight_line(error, positions, reference)
     if len(readings) != len(error):
         raise InputError(f"{len(readings)} readings for {len(error)} rows", "readings", "give one a row")
+    refuse_unknown("readings", readings=readings)
     low, high = float(np.min(readings)), float(np.max(readings))
     moves = high - low > 0.5
     refuse_unless(moves, f"the sensor moves by {high - low:.2g} K only", "readings", "take a run that warms it")
@@ -148,3 +150,4 @@ def _refuse_misfit(error: FloatArray, positions: FloatArray) -> None:
     fits = np.ndim(error) == 2 and np.shape(error)[1:] == np.shape(positions) and len(positions) >= 2
     what = f"errors of shape {np.shape(error)} at {np.size(positions)} positions"
     refuse_unless(fits, what, "error", "give a row a time with one error a position, two positions at least")
+    refuse_unknown("error", error=error, positions=positions)

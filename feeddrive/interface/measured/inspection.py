@@ -73,9 +73,13 @@ def inspect(
     if isinstance(found, FrequencyResponse):
         return Inspected(Path(path), found.sha256, response=found)
     if found is None:
-        if wishes.channels:
+        given = {
+            "axis": axis, "lead": lead, "channel": channels, "rate": rate, "part": part, "sample time": sample_time,
+            "columns": columns,
+        }  # fmt: skip
+        if unused := [name for name, value in given.items() if value]:
             what = "has canonical headings, which say what is which" if known is None else "is read by a mapping"
-            raise InputError(what, where, "leave out --channel, and correct the headings or the mapping")
+            raise InputError(what, where, f"leave out {', '.join(unused)}, and correct the headings or the mapping")
         recording = read_recording(Path(path), None if map is None else Path(map), decimal=decimal)
         return Inspected(Path(path), recording.sha256, recording)
     understood = mapped(found, known, where) if known is not None else understand(found, wishes, where)
