@@ -22,5 +22,6 @@ def refuse_unknown(where: str, **series: FloatArray) -> None:
         unknown = np.argwhere(~np.isfinite(values))
         if len(unknown):
             first = ", ".join(str(int(i) + 1) for i in unknown[0])
-            what = f"{name} has {len(unknown)} of {np.size(values)} values that are no number, the first at place {first}"
+            count = f"{len(unknown)} of {np.size(values)} values"
+            what = f"{name} has {count} that are no number, the first at place {first}"
             raise InputError(what, where, "leave them out, or record them again")
