@@ -269,6 +269,10 @@ def test_a_friction_at_an_end_of_its_range_is_not_searched(rigid: Plant) -> None
         refuse_at_an_end(problem, [stiff])
     refuse_at_an_end(problem, [bristle.of(stiffness=1e7, damping=0.0, break_away=0.0)])  # ends of none are values
     refuse_at_an_end(problem, [Payload.of(mass=-0.95 * 60.0)])  # no friction: judging says so
+    warm = find_effect("viscous_warmup").of(Port.TABLE, share=1.0, time_constant=2.0)
+    with pytest.raises(InputError, match="end of what is physical"):
+        refuse_at_an_end(problem, [warm])
+    refuse_at_an_end(calibrated(problem), [warm])  # the drag may be more than declared, and more of it is lost then
 
 
 @pytest.mark.parametrize("half_width", [1e-3, 5e-3])

@@ -10,9 +10,13 @@ import pytest
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.calibration.declared import FARTHEST_FACTOR
 from feeddrive.diagnosis.calibration.value_slopes import LONG, STEP, slopes_of
+from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.plant.file.plant_file import read_plant
+from feeddrive.recording import read_recording
 from feeddrive.typing import FloatArray
 from tests.analytic.test_values_in_a_valley import DEVIATIONS, valley
+from tests.recovery.fleet.case import case
 from tests.recovery.rigid_runs import Truth
 from tests.recovery.test_value_asked_once import begun
 
@@ -50,3 +54,16 @@ def test_no_step_leads_beyond_an_end() -> None:
     assert pushed.calibration is not None
     assert np.all(np.abs(pushed.calibration.coordinates) <= far)
     assert np.any(np.abs(pushed.calibration.coordinates) == far)
+
+
+@pytest.mark.slow
+def test_warm_up_of_a_drag_that_is_more_than_declared_is_named(tmp_path: Path) -> None:
+    """0.88 of a drag of 1.2 times the declared one is lost: beside the declared one, all and more."""
+    plant_file, fitted, judged = case(704_406).write(tmp_path)
+    found, _ = diagnose(read_plant(plant_file), [read_recording(fitted)], [read_recording(judged)])
+    names = {effect.name: effect for effect in found.effects}
+    # drags of guide and screw, 1.28 and 1.18 of the declared, are beyond half of their tolerance and may be named
+    assert names.keys() - {"friction_deviation"} == {"viscous_warmup"}
+    constant = names["viscous_warmup"].parameters["time_constant"]
+    assert constant.ci95 is not None and constant.ci95[0] < 5.204 < constant.ci95[1]
+    assert all(one.after.rms < 1.15 * one.noise_rms for one in found.channels)

@@ -217,12 +217,20 @@ def refuse_at_an_end(problem: Problem, effects: Sequence[Effect]) -> None:
         InputError: there is such an effect.
     """
     for effect in effects:
-        if isinstance(effect, FrictionEffect) and (at_an_end(effect, problem.plant) or at_its_limit(effect)):
+        at_end = at_an_end(effect, problem.plant) and not _of_a_fitted_level(problem, effect)
+        if isinstance(effect, FrictionEffect) and (at_end or at_its_limit(effect)):
             raise InputError(f"{effect.name} has run to the end of what is physical", effect.name)
         if isinstance(effect, StructuralMode):
             longest = max((e.recording.duration for e in problem.evidence), default=math.inf)
             if number(effect.values["frequency"]) * longest < 1:
                 raise InputError(f"{effect.name} has a longer period than any recording", effect.name)
+
+
+def _of_a_fitted_level(problem: Problem, effect: Effect) -> bool:
+    """Whether an effect is a share of a declared drag that is fitted: of all of one that is more, more is lost."""
+    known = problem.calibration
+    drag = f"{effect.port}.viscous"
+    return isinstance(effect, ViscousWarmup) and known is not None and any(one.key == drag for one in known.values)
 
 
 def refuse_of_no_hours(problem: Problem, effects: Sequence[Effect]) -> None:
