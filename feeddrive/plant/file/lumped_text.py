@@ -24,8 +24,7 @@ def plant_text_with_effects(original_text: str, effects: Sequence[Effect], remar
 
     Args:
         original_text: of the plant file; kept as it is.
-        effects: what is appended, each as a block `[[effect]]` with its values in full precision and SI units, but for
-            those that a file need not give.
+        effects: what is appended, each as a block `[[effect]]` with its values in full precision and SI units.
         remarks: one comment per effect, in their order; none of them, or as many as effects.
 
     Returns:
@@ -50,7 +49,7 @@ def _block(effect: Effect, remark: str) -> str:
     lines = [f"# {' '.join(_printable(remark).split())}"] if remark.strip() else []
     lines += ["[[effect]]", f'name = "{effect.name}"', f'port = "{effect.port}"']
     lines += [f'{effect.place_key} = "{effect.place}"'] if effect.place != effect.default_place else []
-    given = [p for p in effect.parameters if p.key in effect.values and effect.values[p.key] != p.default]
+    given = [p for p in effect.parameters if p.key in effect.values]
     lines += [f"{p.key} = {_written(effect.values[p.key], p.unit)}" for p in given]
     return "\n".join(lines) + "\n"
 
