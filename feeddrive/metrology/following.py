@@ -73,8 +73,9 @@ def settling(
     """
     if not window > 0:
         raise InputError(f"a window of {window:g} m", "settling", "write a window above zero")
-    if len(time) != len(position) or not np.all(np.isfinite(position)):
-        raise InputError("times and positions are not as many finite numbers", "settling", "give (n,) and (n,)")
+    if len(time) != len(position):
+        raise InputError(f"{len(time)} times for {len(position)} positions", "settling", "give (n,) and (n,)")
+    refuse_unknown("settling", time=time, position=position)
     upto = int(np.searchsorted(time, leave, side="left"))
     standing = position[int(np.searchsorted(time, arrival, side="left")) : upto]
     if not len(standing):

@@ -16,7 +16,7 @@ from tests.generator.thermal_effects import Planted
 from tests.generator.warm_axis import Truth, simulate, write_csv
 
 WITHIN_TOLERANCE = 1.3
-"""Factor on the viscous drag of nut and bearings, which the plant file assumes: half more or less is within that."""
+"""Factor on the viscous drag of nut and bearings, which the plant file has from Palmgren's factors: known to 30 %."""
 
 CASES: dict[str, Planted] = {
     "motor_heat": {"motor_heat": {"power": 8.0, "at_speed": 94.2, "share_at_rest": 0.3}},
@@ -89,5 +89,5 @@ def test_value_within_its_tolerance_is_fitted_and_not_named(tmp_path: Path) -> N
     assert [effect.name for effect in found.effects] == []
     assert at_the_floor(found) == []
     drag = next(one for one in found.diagnosis.calibrated if one.key == "screw.viscous")
-    # heat reduced to a few bodies is exact to a thousandth of a rise, which is some thousandths of an oil's viscosity
-    assert drag.value / drag.declared == pytest.approx(WITHIN_TOLERANCE, rel=0.02)
+    # the torque's law misses two thousandths of it, of which the drags of nut and bearings are a third: 0.6 %
+    assert drag.value / drag.declared == pytest.approx(WITHIN_TOLERANCE, rel=0.006)

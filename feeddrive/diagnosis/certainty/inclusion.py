@@ -99,7 +99,7 @@ class _Member:
 def _members_at_rest(search: Search) -> tuple[_Member, ...]:
     """Per member of a set, the set without it; both with their declared values at rest.
 
-    Slopes say of the values what holds near the set at hand. A stiffness along the stroke that is fifty nats likelier
+    Slopes say of the values what holds near the set at hand. A stiffness along the stroke that is forty nats likelier
     than nothing by them may be what a spring a deviation softer says as well, and beside an encoder whose steps show
     the values that stand beside a braked mode tell it, where those that suit the set without it tell nothing.
     """

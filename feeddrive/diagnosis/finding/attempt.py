@@ -209,7 +209,8 @@ def refuse_at_an_end(problem: Problem, effects: Sequence[Effect]) -> None:
     """Refuse a friction of which a value has run to an end of its range, and a mode that does not swing once.
 
     Judging would deny both. A bristle that gives way by a picometre is a sign of the velocity, and takes minutes to
-    simulate; a warm-up that is over at once is another viscous friction; a mode of a period longer than the recording
+    simulate; a warm-up that is over at once is another viscous friction, while one that takes all of a declared drag is
+    none yet where that drag is fitted; a mode of a period longer than the recording
     drags at the table as a damper does. Other laws become known ones at their ends (`spring_law`, `as_payload`), which
     the search asks.
 
@@ -217,8 +218,9 @@ def refuse_at_an_end(problem: Problem, effects: Sequence[Effect]) -> None:
         InputError: there is such an effect.
     """
     for effect in effects:
-        at_end = at_an_end(effect, problem.plant) and not _of_a_fitted_level(problem, effect)
-        if isinstance(effect, FrictionEffect) and (at_end or at_its_limit(effect)):
+        if isinstance(effect, FrictionEffect) and (
+            at_its_limit(effect) or (at_an_end(effect, problem.plant) and not _of_a_fitted_level(problem, effect))
+        ):
             raise InputError(f"{effect.name} has run to the end of what is physical", effect.name)
         if isinstance(effect, StructuralMode):
             longest = max((e.recording.duration for e in problem.evidence), default=math.inf)

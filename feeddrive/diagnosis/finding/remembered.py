@@ -8,6 +8,7 @@ from threading import Lock
 from typing import Generic, TypeVar
 
 from feeddrive.effects.base import Effect
+from feeddrive.plant.plant import Plant
 
 Value = TypeVar("Value")
 
@@ -77,3 +78,8 @@ class Remembered(Generic[Value]):
 def effects_key(effects: Sequence[Effect]) -> tuple[object, ...]:
     """What a prediction depends on of effects: names, places and values."""
     return tuple((e.name, str(e.port), e.place, tuple(e.values.items())) for e in effects)
+
+
+def plant_key(plant: Plant, effects: Sequence[Effect]) -> tuple[object, ...]:
+    """What tells a plant with some effects from another one: its chain, by kind and values, and the effects."""
+    return plant.chain.key, tuple(plant.chain.values.items()), effects_key(effects)

@@ -13,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 
 from feeddrive.diagnosis.finding.candidates import CANDIDATES
-from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
+from feeddrive.diagnosis.finding.remembered import Remembered, plant_key
 from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.heat.heat_candidates import HEAT_CANDIDATES
 from feeddrive.diagnosis.heat.heat_evidence import (
@@ -217,10 +217,11 @@ class WarmPredictor(Predictor[WarmEvidence]):
 
     def run(self, plant: Plant, evidence: WarmEvidence) -> WarmRun:
         """What the plant does in the log."""
-        log, chain = evidence.log, tuple(plant.chain_values().items())
-        moving, whole = (chain, effects_key(plant.motion_effects)), (chain, effects_key(plant.effects))
-        powers = self._powers.found(log, moving, lambda: friction_powers(plant, log))
-        return self._known.found(log, whole, lambda: simulate_log(plant, self._model(plant), log, powers))
+        log = evidence.log
+        powers = self._powers.found(log, plant_key(plant, plant.motion_effects), lambda: friction_powers(plant, log))
+        return self._known.found(
+            log, plant_key(plant, plant.effects), lambda: simulate_log(plant, self._model(plant), log, powers)
+        )
 
     def predict(self, plant: Plant, evidence: WarmEvidence) -> dict[str, FloatArray]:
         """Channel to its prediction, (n,) [N m, m, degC]."""

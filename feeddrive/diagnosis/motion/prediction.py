@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from feeddrive.diagnosis.finding.candidates import CANDIDATES
-from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
+from feeddrive.diagnosis.finding.remembered import Remembered, effects_key, plant_key
 from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.likelihood.coordinates import is_absent
 from feeddrive.diagnosis.likelihood.predictor import Predictor
@@ -56,7 +56,7 @@ class AxisPredictor(Predictor[AxisEvidence]):
     def _steps(self, plant: Plant, evidence: AxisEvidence) -> LoadMotion:
         """Motion of the load side without the motor's inertia, at the steps of the simulation."""
         bare = evidence.placed(_load_side(plant))
-        return self._runs.found(evidence.motion, _values_key(bare), lambda: _simulated(bare, evidence))
+        return self._runs.found(evidence.motion, plant_key(bare, bare.effects), lambda: _simulated(bare, evidence))
 
     def _turning(self, plant: Plant, motion: MotorMotion) -> FloatArray | float:
         """Torque that the motor of an elastic chain takes to turn itself [N m], shape (n,)."""
@@ -107,7 +107,7 @@ class AxisPredictor(Predictor[AxisEvidence]):
 
     def scale(self, plant: Plant) -> float:
         """Factor on the predicted torque that fits the recordings in `scaled` best."""
-        key = _values_key(plant)
+        key = plant_key(plant, plant.effects)
         if key not in self._scales:
             self._scales[key] = self._fitted_scale(plant)
         return self._scales[key]
@@ -209,7 +209,3 @@ def _at_motor_alone(effect: Effect) -> bool:
     if effect.kind == Kind.TIMING or isinstance(effect, DriveEffect):
         return True
     return isinstance(effect, SourceEffect) and effect.port == Port.MOTOR
-
-
-def _values_key(plant: Plant) -> object:
-    return (plant.chain.key, tuple(plant.chain.values.items()), effects_key(plant.effects))
