@@ -91,6 +91,10 @@ NOISE = {"temperature": 0.03, "growth": 0.15e-6}
 NOISE_REACHED = 1.2
 """Residual over sensor noise where nothing is missing, as asked."""
 
+MESH = 1.5e-3
+"""What the generator's own mesh errs, over the rise: of 21 K at the front bearing, heated at its seat, its 250 volumes
+of four rings are 32 mK off what finer and finer meshes come to (`motor_large`)."""
+
 
 @cache
 def plant() -> Plant:
@@ -158,7 +162,7 @@ def check(planted: Planted, seed: int, folder: Path, runs: tuple[Schedule, Sched
     for channel in result.channels:
         noise = NOISE["growth" if channel.name.startswith("table_growth") else "temperature"]
         limit = GROWTH_OVER_NULL if planted else NOISE_REACHED
-        assert channel.after.rms <= limit * noise, channel.name
+        assert channel.after.rms <= math.hypot(limit * noise, MESH * channel.before.rms), channel.name
 
 
 def test_smoke_nothing_is_found_where_nothing_is_planted(tmp_path: Path) -> None:
