@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.starts.sines import (
+    SKIRT,
     longest_sine,
     sine_among_fringes,
     strongest_orders,
@@ -130,3 +131,19 @@ def test_several_periods_in_little_more_than_a_revolution_are_found(order: float
     assert nearest.order == pytest.approx(order, abs=1 / (8 * 1.1))  # an eighth of what they resolve
     assert nearest.amplitude == pytest.approx(0.5, rel=0.15)
     assert strongest_orders(angle / 1.2, residual) == []  # less than a revolution
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_order_that_leaves_the_band_where_a_drive_overshoots_is_found_in_its_strokes(seed: int) -> None:
+    """Its strokes show it, but for an overshoot of 15 %, and reversals show more of what is no sine of the angle."""
+    random = np.random.default_rng(seed)
+    speed = 2 * np.pi * 8.0 * np.where(np.arange(600) < 20, 1.15, 1.0) * np.minimum(1.0, np.arange(600, 0, -1) / 30)
+    rate = np.concatenate([way * speed for way in (1.0, -1.0) * 3])
+    angle = np.cumsum(rate) * STEP
+    highest = 2 * np.pi * SKIRT * EDGE / np.max(np.abs(rate))
+    order = float(random.uniform(1.01, 1.1)) * highest
+    bumps = np.where(np.abs(rate) < 0.7 * np.max(speed), 0.3 * np.sign(np.roll(rate, 200)), 0.0)
+    residual = 0.1 * np.sin(order * angle + 1.0) + bumps + 0.02 * random.standard_normal(len(angle))
+    sines = strongest_sines(angle, residual, rate, EDGE)
+    # a tenth of the resolution of a travel of ten turns
+    assert min(abs(one.order - order) for one in sines) < 0.01

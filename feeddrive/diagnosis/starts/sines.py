@@ -25,6 +25,13 @@ SKIRT = math.sqrt(2)
 """Frequency over the edge of the band up to which a sine is looked for: a sixteenth of it passes the filter, and a
 ripple of a drive stands far above its noise."""
 
+LOST = 0.2
+"""Share of its samples that an octave of orders may lose towards its upper end, and is cut where it would lose more: a
+sine that is looked for in four fifths of where it shows takes four fifths of what it does."""
+
+FINEST = 2**0.125
+"""Width of such a cut at least, an eighth of an octave."""
+
 LONGEST_PERIOD = 2.0
 """Revolutions of the longest period of a lead that is looked for beside a line: a longer one is a curve along the
 stroke, which the lead map takes. A force over some turns has no map."""
@@ -41,6 +48,9 @@ OVERSAMPLING = 8
 FRINGES = 16 * OVERSAMPLING
 """Reach about a peak within which a fringe of it is looked for: where most time is spent at places of a sixteenth of
 the travel, the order stands among fringes of about its size that reach so far."""
+
+AS_MUCH = 0.5
+"""Part of what the best sine takes, from which another one is asked as well: its fringe, or the best of an octave."""
 
 TOLD = 1e-6
 """Share of their product by which sine and cosine stand apart on the samples: below it both are one column, but for
@@ -103,7 +113,7 @@ def _with_fringes(share: FloatArray, peaks: IntegerArray) -> IntegerArray:
     """Tops of what sines take of the samples, (n,), about some peaks: those that take most of what the highest does."""
     near = np.unique(np.clip(peaks[:, None] + np.arange(-FRINGES, FRINGES + 1), 1, len(share) - 2))
     tops = near[(share[near] >= share[near - 1]) & (share[near] > share[near + 1])]
-    most = tops[share[tops] > 0.5 * np.max(share[tops], initial=0.0)]
+    most = tops[share[tops] > AS_MUCH * np.max(share[tops], initial=0.0)]
     found: IntegerArray = most[np.argsort(share[most])[::-1]]
     return found
 
@@ -192,19 +202,31 @@ def strongest_sines(
         count: how many.
 
     Returns:
-        Sines, the one that takes most first.
+        Sines, the one that takes most first; the best of an octave that takes half as much stands among them, as some
+        slow samples at the reversals give three fringes of one sine before another that the strokes show.
     """
     square, found = float(residual @ residual), longest_sine(angle, residual, LONGEST_PERIOD)
     if square == 0.0:
         return []
+    foremost = []
     for slow, lowest, highest in _octaves(speed, edge):
         there, left = angle[slow], residual[slow]
         mean = np.ones((len(there), 1))
         level, _ = _taken(mean, left)
-        for order in strongest_orders(there, left, highest, count, lowest):
-            # of some slow samples at the reversals a sine of any size passes near, and takes no more than is there
-            found.append(_sine_of(order, there, left, mean, level, square))
-    return sorted(found, key=lambda one: -one.share)[:count]
+        # of some slow samples at the reversals a sine of any size passes near, and takes no more than is there
+        sines = [
+            _sine_of(order, there, left, mean, level, square)
+            for order in strongest_orders(there, left, highest, count, lowest)
+        ]
+        foremost += sorted(sines, key=_share)[-1:]
+        found += sines
+    found.sort(key=_share, reverse=True)
+    kept = found[:count]
+    return [*kept, *(one for one in found[count:] if one in foremost and one.share > AS_MUCH * kept[0].share)]
+
+
+def _share(one: Sine) -> float:
+    return one.share
 
 
 def sine_among_fringes(angle: FloatArray, residual: FloatArray, speed: FloatArray, edge: float) -> list[Sine]:
@@ -228,18 +250,23 @@ def sine_among_fringes(angle: FloatArray, residual: FloatArray, speed: FloatArra
 
 
 def _octaves(speed: FloatArray, edge: float) -> list[tuple[BoolArray, float, float]]:
-    """Samples at which an octave of orders is in the band, (n,), and its ends."""
-    fastest = float(np.max(np.abs(speed), initial=0.0))
-    if fastest == 0.0:
+    """Samples at which some orders are all in the band, (n,), and their ends: an octave, or as far as most samples go.
+
+    Where the axis moves at one speed the orders that leave the band there are few, and those below them are looked for
+    in its strokes: a drive that overshoots is a little faster for a moment.
+    """
+    rates = np.sort(np.abs(speed))
+    if not len(rates) or rates[-1] == 0.0:
         return []
     seen = 2 * np.pi * SKIRT * edge
-    octaves, lowest, highest = [], 0.0, seen / fastest
+    octaves, lowest, highest = [], 0.0, seen / rates[-1]
     while lowest < BINS_PER_TURN / 4:
         slow = np.abs(speed) * highest <= seen * (1 + 1e-9)
         if not slow.any():
             break
         octaves.append((slow, lowest, highest))
-        lowest, highest = highest, 2 * highest
+        most = rates[math.ceil((1 - LOST) * np.count_nonzero(slow)) - 1]  # of those, as far as they go together
+        lowest, highest = highest, min(max(seen / max(most, seen / (2 * highest)), FINEST * highest), 2 * highest)
     return octaves
 
 
