@@ -9,6 +9,13 @@
 | gamma_cd | covariance of channels c and d at a lag of l samples, zero where samples are left out | 1 |
 | w | Parzen's window, zero from two blocks of time on | 1 |
 
+A programme that comes again after T brings again what a drive and its encoder do in it, and N cycles of one error are
+one error. The share of noise that comes again, rho, is correlated over every number of cycles:
+
+    gamma(l + k T) = rho gamma(l),  k = 1 .. N - 1,    rho = sum_k sum_t r(t) r(t + k T) / sum_k sum_t r(t)^2
+
+What is more than noise is what laws miss, of which a comparison of sets takes its own share (`likelihood.set_evidence`).
+
 Valid where the residual scatters alike over a recording; `uncertainty` looks after residuals that do not.
 Source: Priestley, Spectral Analysis and Time Series (1981), sections 6.2.3 (window) and 7.8 (sums of coloured noise).
 """
@@ -23,7 +30,9 @@ from scipy.fft import irfft, next_fast_len, rfft
 from scipy.signal.windows import parzen
 
 from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.problem import LEVEL
 from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.cycle import cycle_of
 from feeddrive.diagnosis.motion.preparing import BLOCK
 from feeddrive.typing import BoolArray, ComplexArray, FloatArray, IntegerArray
 
@@ -42,25 +51,40 @@ class Stretch:
         rows: of the residual, all channels one after the other.
         channels: how many.
         floating: numbers of the channels whose mean was taken out.
+        noise: mean square of what is noise alone, per channel, (c,).
         places: of a channel's samples on the thinned comb, shape (n,).
-        lags: beyond which nothing is correlated, in thinned samples.
+        lags: beyond which nothing is correlated but by what comes again, in thinned samples.
+        cycle: after which the motion comes again, in thinned samples; 0 where it does not.
     """
 
     rows: slice
     channels: int
     floating: tuple[int, ...]
+    noise: FloatArray
     places: IntegerArray
     lags: int
+    cycle: float = 0.0
+
+    @property
+    def length(self) -> int:
+        """Of the comb."""
+        return int(self.places[-1]) + 1
 
     @property
     def size(self) -> int:
         """Length of a Fourier transform in which the end of the comb does not meet its beginning."""
-        return int(next_fast_len(int(self.places[-1]) + 1 + self.lags, real=True))
+        return int(next_fast_len(self.length + (self.length if self.cycle else self.lags), real=True))
+
+    @property
+    def cycles_apart(self) -> FloatArray:
+        """Sum of the cosines of all lags of some cycles within the comb, at each frequency, (f,)."""
+        turns = 2 * np.pi * np.arange(self.size // 2 + 1) * self.cycle / self.size
+        return np.asarray(sum(np.cos(k * turns) for k in range(1, 1 + int((self.length - 1) / self.cycle))))
 
     def on_comb(self, values: FloatArray) -> FloatArray:
         """Values (m,) or (m, k) of a residual's rows by channel and comb, zero in gaps; shape (c, length[, k])."""
         own = values[self.rows].reshape(self.channels, len(self.places), *values.shape[1:])
-        result = np.zeros((self.channels, int(self.places[-1]) + 1, *values.shape[1:]))
+        result = np.zeros((self.channels, self.length, *values.shape[1:]))
         result[:, self.places] = own
         return result
 
@@ -75,7 +99,10 @@ def stretches(evidence: Sequence[Evidence], rows: Sequence[BoolArray]) -> Iterat
         if len(at):
             lags = max(2, min(round(WINDOW * max(one.block, BLOCK) / step), len(at) // 3))
             floating = tuple(i for i, name in enumerate(one.channels) if name in one.floating)
-            yield Stretch(slice(first, last), len(one.channels), floating, (at - at[0]) // one.thinning, lags)
+            places, cycle = (at - at[0]) // one.thinning, cycle_of(one.recording, one.thinning, lags)
+            cycle = cycle if cycle < len(at) else 0.0
+            noise = np.array([one.kept.get(name, 1.0) / one.left.get(name, 1.0) ** 2 for name in one.channels])
+            yield Stretch(slice(first, last), len(one.channels), floating, noise, places, lags, cycle)
         first = last
 
 
@@ -97,7 +124,7 @@ def score_covariance(
     last = sum(int(one.thinned(chosen).sum()) * len(one.channels) for one, chosen in zip(evidence, rows, strict=True))
     for stretch in stretches(evidence, rows):
         left = rfft(stretch.on_comb(residual), stretch.size, axis=1)
-        total += _scatter(np.conj(left)[:, None] * left[None], columns, stretch)
+        total += _scatter(np.conj(left)[:, None] * left[None], columns, stretch, _shares_again(left, stretch))
     alone = columns[last:]
     if len(alone):
         # a measured number scatters as one independent value of the recordings does
@@ -136,16 +163,44 @@ def fitted_away(
     return 0.5 * (total + total.T)
 
 
-def _scatter(pairs: ComplexArray, columns: FloatArray, stretch: Stretch) -> FloatArray:
+def _shares_again(left: ComplexArray, stretch: Stretch) -> FloatArray | None:
+    """Root of rho of each channel, (c,), 0 where more than noise is left; None where the motion does not come again."""
+    if not stretch.cycle:
+        return None
+    met = np.zeros(stretch.length)
+    met[stretch.places] = 1.0
+    kernels = np.vstack([np.ones(left.shape[1]), stretch.cycles_apart])
+    rows, squares = (_sums(np.abs(one) ** 2, kernels, stretch.size) for one in (rfft(met, stretch.size)[None], left))
+    pairs = np.where(rows[0, 1] > 0, rows[0, 1] / rows[0, 0], 1.0) * squares[:, 0]
+    again = np.clip(squares[:, 1] / np.where(pairs > 0, pairs, 1.0), 0.0, 1.0)
+    is_noise = squares[:, 0] / len(stretch.places) * LEVEL**2 < stretch.noise
+    shares: FloatArray = np.sqrt(np.where(is_noise, again, 0.0))
+    return shares
+
+
+def _sums(power: FloatArray, kernels: FloatArray, size: int) -> FloatArray:
+    """Sums of series' products at the lags of kernels, (c, j), of their powers (c, f) and the kernels' cosines (j, f)."""
+    return np.asarray((power * _twice(size)) @ kernels.T / size)
+
+
+def _twice(size: int) -> FloatArray:
+    """Weight of each frequency of one sign in a real sum over all: all but the first, and an even last, count twice."""
+    twice = np.full(size // 2 + 1, 2.0)
+    twice[0] = 1.0
+    if size % 2 == 0:
+        twice[-1] = 1.0
+    return twice
+
+
+def _scatter(
+    pairs: ComplexArray, columns: FloatArray, stretch: Stretch, again: FloatArray | None = None
+) -> FloatArray:  # fmt: skip
     """Covariance of the columns' sums under a periodogram of all pairs of channels, (c, c, f), smoothed; (k, k)."""
     colour = np.conj(_smoothed(pairs, stretch))
+    if again is not None:
+        colour *= 1.0 + 2.0 * np.multiply.outer(np.outer(again, again), stretch.cycles_apart)
     spectrum = rfft(stretch.on_comb(columns), stretch.size, axis=1)
-    # a real sum over all frequencies from those of one sign: all but the first, and an even last one, count twice
-    twice = np.full(spectrum.shape[1], 2.0)
-    twice[0] = 1.0
-    if stretch.size % 2 == 0:
-        twice[-1] = 1.0
-    weighted = np.einsum("cdf,dfk->cfk", colour * twice, spectrum, optimize=True)
+    weighted = np.einsum("cdf,dfk->cfk", colour * _twice(stretch.size), spectrum, optimize=True)
     total: FloatArray = np.real(np.einsum("cfi,cfk->ik", np.conj(spectrum), weighted, optimize=True)) / stretch.size
     return total
 
