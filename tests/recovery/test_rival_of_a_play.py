@@ -13,7 +13,7 @@ from feeddrive.diagnosis.certainty.imitations import imitations_of
 from feeddrive.diagnosis.certainty.rival_odds import Residuals
 from feeddrive.diagnosis.finding.attempt import with_predictable
 from feeddrive.diagnosis.finding.search import Search
-from feeddrive.diagnosis.forms.spring_law import from_declared
+from feeddrive.diagnosis.forms.spring_law import from_declared, hardly_carrying
 from feeddrive.diagnosis.judging.judge import prepared_for_judging
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.standing import regained, same_samples
@@ -21,6 +21,7 @@ from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.base import Port
 from feeddrive.effects.friction.stribeck import Stribeck
 from feeddrive.effects.transmission.backlash import Backlash
+from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import read_recording
 from tests.generator import effects as planted
@@ -73,3 +74,14 @@ def test_a_lost_preload_takes_the_place_of_a_play_by_its_ratio(
     monkeypatch.setattr("feeddrive.diagnosis.certainty.ambiguity.hardly_carrying", lambda *_: None)
     beside_sharp_edges = _in_place(found, judged, 0, softer, mine)
     assert beside_sharp_edges is not None and beside_sharp_edges.odds < -AGAINST
+
+
+def test_a_lost_preload_that_loses_nothing_is_no_play() -> None:
+    """A fit may end at the declared stiffness, where the force up to which it holds is any: no play has its width."""
+    plant = catalogued().plant
+    (recorded,) = [recording(one, "train") for one in recording_pair(AXES["bench"], (), (1, 2), (7.0, 6.0))[:1]]
+    problem, _, _ = prepared(plant, [recorded], [], 0.75)
+    idle = PreloadLoss.of(ratio=1.0, force=50.0)
+    assert hardly_carrying(problem, fit(problem, [idle], iterations=0), 0) is None
+    softer = fit(problem, [PreloadLoss.of(ratio=0.5, force=50.0)], iterations=0)
+    assert hardly_carrying(problem, softer, 0) is not None

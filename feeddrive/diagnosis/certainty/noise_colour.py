@@ -14,7 +14,7 @@ one error. The share of noise that comes again, rho, is correlated over every nu
 
     gamma(l + k T) = rho gamma(l),  k = 1 .. N - 1,    rho = sum_k sum_t r(t) r(t + k T) / sum_k sum_t r(t)^2
 
-What is more than noise is what laws miss, of which a comparison of sets takes its own share (`likelihood.set_evidence`).
+What is more than noise is what laws miss: a comparison of sets takes its own share of it (`likelihood.set_evidence`).
 
 Valid where the residual scatters alike over a recording; `uncertainty` looks after residuals that do not.
 Source: Priestley, Spectral Analysis and Time Series (1981), sections 6.2.3 (window) and 7.8 (sums of coloured noise).
@@ -179,7 +179,7 @@ def _shares_again(left: ComplexArray, stretch: Stretch) -> FloatArray | None:
 
 
 def _sums(power: FloatArray, kernels: FloatArray, size: int) -> FloatArray:
-    """Sums of series' products at the lags of kernels, (c, j), of their powers (c, f) and the kernels' cosines (j, f)."""
+    """Sums of series' products at lags, (c, j), of their powers (c, f) and the lags' sums of cosines (j, f)."""
     return np.asarray((power * _twice(size)) @ kernels.T / size)
 
 

@@ -89,11 +89,13 @@ def _carries(there: Standing, place: int, count: int) -> bool:
 
 
 def hardly_carrying(problem: Problem, found: Fit, place: int) -> Fit | None:
-    """A set fitted with its lost preload at the ratio at which it is a free play; None where that is not its effect."""
+    """A set fitted with its lost preload at the ratio at which it is a free play; None where it has none that is lost."""
     law, plant = found.effects[place], problem.plant
     if not isinstance(law, PreloadLoss):
         return None
     lost = lost_motion(number(law.values["ratio"]), number(law.values["force"]), plant)
+    if not lost > 0:  # fitted to as stiff as declared
+        return None
     play = softened(lost, LEAST[law.name, "ratio"], plant)
     ratio = len(read_coordinates(found.effects[:place], plant)) + [*play.values].index("ratio")
     effects = [*found.effects[:place], play, *found.effects[place + 1 :]]
