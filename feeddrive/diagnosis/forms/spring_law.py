@@ -89,7 +89,7 @@ def _carries(there: Standing, place: int, count: int) -> bool:
 
 
 def hardly_carrying(problem: Problem, found: Fit, place: int) -> Fit | None:
-    """A set fitted with its lost preload at the ratio at which it is a free play; None where it has none that is lost."""
+    """A set fitted with its lost preload at the ratio at which it is a free play; None where none is lost."""
     law, plant = found.effects[place], problem.plant
     if not isinstance(law, PreloadLoss):
         return None
