@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import gc
+from weakref import ref
+
 import numpy as np
 import pytest
 
@@ -54,6 +57,16 @@ def test_the_cycle_of_a_programme_is_found_to_a_part_of_a_sample() -> None:
 )
 def test_what_does_not_come_again_has_no_cycle(motion: FloatArray) -> None:
     assert cycle_of(recorded(motion), 1, 100) == 0.0
+
+
+def test_a_recording_is_not_kept_for_its_cycle() -> None:
+    """Hours of recordings, one after the other, are no memory of a program that goes through them."""
+    one = recorded(angle())
+    assert cycle_of(one, 1, 100) == cycle_of(one, 1, 100)
+    alive = ref(one)
+    del one
+    gc.collect()
+    assert alive() is None
 
 
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])

@@ -11,7 +11,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
@@ -25,7 +25,10 @@ OTHER = 0.5
 """q from which a motion has become another: one that goes on as it was has not come again."""
 
 
-@lru_cache(maxsize=16)
+_KNOWN: WeakKeyDictionary[Recording, dict[tuple[int, int], float]] = WeakKeyDictionary()
+"""Cycles of recordings that are in use, which every comparison asks for."""
+
+
 def cycle_of(recording: Recording, every: int, least: int) -> float:
     """Lag after which the motion comes again, in steps of `every` samples; 0 where it does not.
 
@@ -37,6 +40,13 @@ def cycle_of(recording: Recording, every: int, least: int) -> float:
     Returns:
         The first lag of those, not a whole number of steps in general.
     """
+    known = _KNOWN.setdefault(recording, {})
+    if (every, least) not in known:
+        known[every, least] = _cycle(recording, every, least)
+    return known[every, least]
+
+
+def _cycle(recording: Recording, every: int, least: int) -> float:
     if "motor_angle" not in recording.channels:
         return 0.0
     rate = np.diff(recording["motor_angle"][::every])
