@@ -38,6 +38,7 @@ from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
 from feeddrive.plant.plant import Plant
+from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
 from tests.convergence.test_simulate import BENCH
 
@@ -45,6 +46,9 @@ ROWS = 6000
 PLANT = Plant("axis", BENCH)
 FIRST, SECOND, THIRD = Payload.of(mass=0.0), ConstantForce.of(force=0.0), LeadErrorCumulative.of(slope=0.0)
 COUNT = 25
+
+RECORDING = Recording.from_arrays(time=0.01 * np.arange(ROWS), motor_angle=np.zeros(ROWS), motor_torque=np.zeros(ROWS))
+"""One in which nothing moves."""
 
 
 def by_channel(residual: FloatArray) -> list[dict[str, FloatArray]]:
@@ -55,7 +59,7 @@ def by_channel(residual: FloatArray) -> list[dict[str, FloatArray]]:
 def problem(columns: dict[str, FloatArray], measured: FloatArray) -> Any:
     """Recordings in which an effect of size one is its column."""
     evidence = SimpleNamespace(
-        channels=("a",), fit_rows=np.ones(ROWS, dtype=bool), recording=SimpleNamespace(sample_time=0.01), block=0.5,
+        channels=("a",), fit_rows=np.ones(ROWS, dtype=bool), recording=RECORDING, block=0.5, left={}, kept={},
         thinning=1, floating=(), model_error={}, noise={}, thinned=lambda rows: rows, at_draws=(),
     )  # fmt: skip
 
@@ -252,7 +256,8 @@ def test_what_a_set_declines_to_predict_is_as_likely_as_a_normal_distribution_of
 class Part:
     """Evidence of a series of which some samples count."""
 
-    channels, recording, block = ("a",), SimpleNamespace(sample_time=0.01), 0.5
+    channels, recording, block = ("a",), RECORDING, 0.5
+    left, kept = {}, {}  # type: ignore[var-annotated]
     thinning, floating, model_error, edge = 1, (), {}, 50.0  # type: ignore[var-annotated]
     motion_speed, noise = np.zeros(ROWS), {}  # type: ignore[var-annotated]
     at_draws = ()

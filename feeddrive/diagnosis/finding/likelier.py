@@ -27,8 +27,9 @@ from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.errors import InputError
 
 FITTED = 2
-"""Sets one move away that are fitted in a round, and as many two moves away where slopes say that they are likelier:
-starts are near by design, so that slopes put the likeliest among the first."""
+"""Sets one move away that are fitted in a round, and one two moves away where slopes say that it is likelier: starts
+are near by design, so that slopes put the likeliest among the first. Of heat, where a start is far from where it ends
+beside another effect, as many two moves away."""
 
 ASKED = 3 * FITTED
 """As many where an encoder does not tell the motion: what its steps give is asked of a fitted set alone, and a set that
@@ -68,7 +69,8 @@ def likelier(problem: Problem, found: Fit, now: Round, denied: Container[str]) -
     tried: list[Taken | None] = []
     given = dict[tuple[int, ...], float]()  # odds of names added: slopes do not know what the encoder's steps give
     most = ASKED if any(e.at_draws for e in problem.evidence) else FITTED
-    for one in [each for each in able if each.is_next][:most] + [each for each in able if not each.is_next][:FITTED]:
+    further = 1 if problem.predictor.of_motion else FITTED
+    for one in [each for each in able if each.is_next][:most] + [each for each in able if not each.is_next][:further]:
         if one.is_next and sum(each is not None and each.odds > 0 for each in tried) >= FITTED:
             continue
         if tried and problem.budget.skips("sets of effects that came near"):  # the likeliest in any case
