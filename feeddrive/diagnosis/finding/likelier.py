@@ -28,8 +28,7 @@ from feeddrive.errors import InputError
 
 FITTED = 2
 """Sets one move away that are fitted in a round, and one two moves away where slopes say that it is likelier: starts
-are near by design, so that slopes put the likeliest among the first. Of heat, where a start is far from where it ends
-beside another effect, as many two moves away."""
+are near by design, so that slopes put the likeliest among the first."""
 
 ASKED = 3 * FITTED
 """As many where an encoder does not tell the motion: what its steps give is asked of a fitted set alone, and a set that
@@ -59,8 +58,18 @@ class Taken(Standing):
         return self.name.split(" with ") if self.name else []
 
 
-def likelier(problem: Problem, found: Fit, now: Round, denied: Container[str]) -> tuple[Taken | None, tuple[Near, ...]]:
-    """The likeliest of the sets near one, fitted, None where none is likelier; and what comes near beside it."""
+def likelier(
+    problem: Problem, found: Fit, now: Round, denied: Container[str], further: int = 1
+) -> tuple[Taken | None, tuple[Near, ...]]:
+    """The likeliest of the sets near one, fitted, None where none is likelier; and what comes near beside it.
+
+    Args:
+        problem: recordings.
+        found: the set.
+        now: candidates of this round.
+        denied: names that are not asked for.
+        further: sets two moves away that are fitted.
+    """
     tried_here = [attempt for attempt in now.attempts if attempt.matters]
     here = [attempt for attempt in tried_here if same_samples(attempt.problem, problem)]
     sets = neighbours(problem, found, here, now.count)
@@ -69,7 +78,6 @@ def likelier(problem: Problem, found: Fit, now: Round, denied: Container[str]) -
     tried: list[Taken | None] = []
     given = dict[tuple[int, ...], float]()  # odds of names added: slopes do not know what the encoder's steps give
     most = ASKED if any(e.at_draws for e in problem.evidence) else FITTED
-    further = 1 if problem.predictor.of_motion else FITTED
     for one in [each for each in able if each.is_next][:most] + [each for each in able if not each.is_next][:further]:
         if one.is_next and sum(each is not None and each.odds > 0 for each in tried) >= FITTED:
             continue
