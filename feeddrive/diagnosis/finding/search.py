@@ -266,9 +266,9 @@ def search(
     )
     if further >= FITTED or problem.predictor.of_motion or problem.plain_error(found.effects) < UNEXPLAINED:
         return result
-    other = search(given, progress, start, most_rounds, FITTED)
-    is_likelier = odds_between(Standing(problem, found), Standing(other.problem, other.fit), tried) > 0
-    return other if is_likelier else result
+    wider = search(given, progress, start, most_rounds, FITTED)
+    is_likelier = odds_between(Standing(problem, found), Standing(wider.problem, wider.fit), tried) > 0
+    return wider if is_likelier else result
 
 
 def _asked(
