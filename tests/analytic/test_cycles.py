@@ -69,6 +69,16 @@ def test_a_recording_is_not_kept_for_its_cycle() -> None:
     assert alive() is None
 
 
+def test_a_cycle_that_the_fitted_rows_do_not_hold_is_none() -> None:
+    """Less than one of three cycles is fitted: nothing comes again in it."""
+    one = evidence(angle(cycles=3))
+    few = np.arange(len(one.counted)) < LENGTH - 40
+    residual = np.random.default_rng(2).standard_normal(2 * int(few.sum()))
+    assert cycle_of(one.recording, 1, 100) > 0
+    told = score_covariance([one], [few], residual, np.ones((len(residual), 1)))
+    assert told[0, 0] > 0
+
+
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
 def test_sums_of_what_comes_again_scatter_as_they_do(share: float) -> None:
     """Of noise a part of which is that of the first cycle again, over many draws, along three columns."""

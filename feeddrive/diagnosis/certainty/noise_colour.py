@@ -67,7 +67,7 @@ class Stretch:
 
     @property
     def length(self) -> int:
-        """Of the comb."""
+        """Samples of the comb, those left out among them."""
         return int(self.places[-1]) + 1
 
     @property
@@ -100,7 +100,7 @@ def stretches(evidence: Sequence[Evidence], rows: Sequence[BoolArray]) -> Iterat
             lags = max(2, min(round(WINDOW * max(one.block, BLOCK) / step), len(at) // 3))
             floating = tuple(i for i, name in enumerate(one.channels) if name in one.floating)
             places, cycle = (at - at[0]) // one.thinning, cycle_of(one.recording, one.thinning, lags)
-            cycle = cycle if cycle < len(at) else 0.0
+            cycle = cycle if cycle <= places[-1] else 0.0  # at least once within the comb
             noise = np.array([one.kept.get(name, 1.0) / one.left.get(name, 1.0) ** 2 for name in one.channels])
             yield Stretch(slice(first, last), len(one.channels), floating, noise, places, lags, cycle)
         first = last

@@ -24,7 +24,6 @@ ALIKE = 0.01
 OTHER = 0.5
 """q from which a motion has become another: one that goes on as it was has not come again."""
 
-
 _KNOWN: WeakKeyDictionary[Recording, dict[tuple[int, int], float]] = WeakKeyDictionary()
 """Cycles of recordings that are in use, which every comparison asks for."""
 
